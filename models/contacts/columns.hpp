@@ -21,7 +21,7 @@ struct Energies {
   double stored = 0.0;
   double dissipation = 0.0;
 };
-/// Those of a system that leaves its energies out.
+/// Energies of a row if the system leaves them out.
 inline constexpr Energies k_no_energies{std::numeric_limits<double>::quiet_NaN(),
                                         std::numeric_limits<double>::quiet_NaN(),
                                         std::numeric_limits<double>::quiet_NaN()};

@@ -140,6 +140,9 @@ struct SurfacePoint {
 
 /// Observables that need the work, or what is stored of it.
 inline constexpr std::array<std::string_view, 3> k_energy_observables{"work", "stored_energy", "dissipation"};
+[[nodiscard]] constexpr bool is_energy(std::string_view observable) noexcept {
+  return std::ranges::find(k_energy_observables, observable) != k_energy_observables.end();
+}
 
 class HybridSystem {
  public:

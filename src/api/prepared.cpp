@@ -37,14 +37,13 @@ double value_of(const Expression& formula, std::string_view text, const Table& h
       fmt::format("'{}' has a value for each row; expected one for a run, for example max({})", text, text));
 }
 
-/// Parts of a history that make no difference to the values of these formulas.
+/// Parts of a history that the values of these formulas do not depend on.
 LeftOut not_needed_by(std::span<const Expression> formulas) {
-  const auto is_energy = [](std::string_view name) {
-    const std::string_view column = name.substr(0, name.find('['));
-    return std::ranges::find(k_energy_observables, column) != k_energy_observables.end();
+  const auto names_energy = [](const Expression& formula) {
+    return std::ranges::any_of(formula.names(),
+                               [](std::string_view name) { return is_energy(name.substr(0, name.find('['))); });
   };
-  return {.energies = std::ranges::none_of(
-              formulas, [&](const Expression& formula) { return std::ranges::any_of(formula.names(), is_energy); }),
+  return {.energies = std::ranges::none_of(formulas, names_energy),
           .rows = std::ranges::all_of(formulas, &Expression::needs_last_row_only)};
 }
 

@@ -53,9 +53,6 @@ class ColumnSink final : public HistorySink {
         observed_(system_.observables().size()),
         places_{place_of(scene, columns.driven), place_of(scene, columns.watched)},
         rows_(rows) {
-    const auto is_energy = [](std::string_view column) {
-      return std::ranges::find(k_energy_observables, column) != k_energy_observables.end();
-    };
     if (!is_energy(columns.driven) && !is_energy(columns.watched)) scene.system->leave_out_energies();
   }
 

@@ -6,9 +6,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "history/recorder.hpp"
 #include "scenario/words.hpp"
-#include "scene/scene.hpp"
 #include "study/sweep/sweep_language.hpp"
 
 namespace monograin::sweep {
@@ -41,29 +39,15 @@ PlacedBands bands_in(Reading& reading, const Section& root) {
   const std::vector<KeySpec> keys = band_keys();
   const Section section(reading, root.table("bands", "[bands]"), keys);
   PlacedBands bands{.request = {.x = section.text("x"), .y = section.texts("y")}, .columns = {}};
-  bands.columns.emplace_back(bands.request.x, section.value_place("x"));
+  bands.columns.push_back({bands.request.x, section.value_place("x"), false});
   for (std::size_t i = 0; i < bands.request.y.size(); ++i) {
-    bands.columns.emplace_back(bands.request.y[i], section.value_place("y", i));
+    bands.columns.push_back({bands.request.y[i], section.value_place("y", i), false});
   }
   bands.request.points = static_cast<int>(section.number("points").value_or(bands.request.points));
   if (auto percentiles = percentiles_in(reading, section); !percentiles.empty()) {
     bands.request.percentiles = std::move(percentiles);
   }
   return bands;
-}
-
-void check_columns(const PlacedBands& bands, const CheckedScenario& scenario, FaultList& faults) {
-  const Scene scene = make_scene(scenario);
-  const Table history = Recorder(*scene.system).take_history();
-  std::vector<std::string_view> names;
-  for (const Column& column : history.columns()) {
-    if (!column.holds_words()) names.push_back(column.name);
-  }
-  for (const auto& [name, where] : bands.columns) {
-    if (name.empty() || std::ranges::find(names, name) != names.end()) continue;
-    faults.add(where, fmt::format("'{}' is no column of the histories; expected one of {}{}", shown(name),
-                                  listed(names), did_you_mean(name, names)));
-  }
 }
 
 }  // namespace monograin::sweep

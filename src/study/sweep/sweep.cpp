@@ -63,47 +63,64 @@ struct Outcome {
   return result;
 }
 
-/// Headings of the results of a history with these columns.
-struct Headings {
-  std::vector<Column> columns;
-  std::string text;
+/// Which values of a history become cells of results.csv, and their headings: final values, then largest ones.
+struct Layout {
+  std::vector<Column> columns;  ///< of the history
+  std::vector<std::size_t> finals;   ///< columns whose final value is a cell
+  std::vector<std::size_t> largest;  ///< columns whose largest value is one
+  std::string headings;
 };
 
-/// Headings of the results of one history: final values, then largest ones.
-[[nodiscard]] std::string headings_of(const std::vector<Column>& columns) {
+/// @param wanted  results such as max.axial.force; empty: all
+[[nodiscard]] Layout layout_of(const std::vector<Column>& columns, const std::vector<std::string>& wanted) {
+  Layout layout{.columns = columns, .finals = {}, .largest = {}, .headings = {}};
   std::vector<std::string> headings;
-  for (const Column& column : columns) {
-    if (!is_counter(column)) headings.push_back("end." + column.heading());
-  }
-  for (const Column& column : columns) {
-    if (!is_counter(column) && !column.holds_words()) headings.push_back("max." + column.heading());
-  }
-  return fmt::format("{}", fmt::join(headings, ","));
+  const auto add = [&](std::string_view prefix, std::vector<std::size_t>& places, bool takes_words) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const std::string name = fmt::format("{}.{}", prefix, columns[k].name);
+      const bool is_wanted = wanted.empty() || std::ranges::find(wanted, name) != wanted.end();
+      if (is_counter(columns[k]) || (columns[k].holds_words() && !takes_words) || !is_wanted) continue;
+      places.push_back(k);
+      headings.push_back(fmt::format("{}.{}", prefix, columns[k].heading()));
+    }
+  };
+  add("end", layout.finals, true);
+  add("max", layout.largest, false);
+  layout.headings = fmt::format("{}", fmt::join(headings, ","));
+  return layout;
 }
 
 /// Collects the final and largest values of a history's columns.
-/// @param headings  cache: those of the last history, whose columns are mostly the same
-void summarise(const Table& history, Headings& headings, Outcome& outcome) {
+/// @param wanted  as for layout_of()
+/// @param layout  cache: that of the last history, whose columns are mostly the same
+void summarise(const Table& history, const std::vector<std::string>& wanted, Layout& layout, Outcome& outcome) {
   if (history.row_count() == 0) return;
-  const std::vector<Column>& columns = history.columns();
-  if (headings.columns != columns) headings = {columns, headings_of(columns)};
-  outcome.columns = headings.text;
+  if (layout.columns != history.columns()) layout = layout_of(history.columns(), wanted);
+  outcome.columns = layout.headings;
   const std::size_t last = history.row_count() - 1;
   std::string& cells = outcome.row.cells;
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (is_counter(columns[k])) continue;
+  const auto begin_cell = [&] {
     if (!cells.empty()) cells += ',';
-    if (columns[k].holds_words()) {
+  };
+  for (const std::size_t k : layout.finals) {
+    begin_cell();
+    if (layout.columns[k].holds_words()) {
       cells += history.word(last, k);
     } else {
       append_csv_number(cells, history.at(last, k));
     }
   }
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (is_counter(columns[k]) || columns[k].holds_words()) continue;
-    cells += ',';
+  for (const std::size_t k : layout.largest) {
+    begin_cell();
     append_csv_number(cells, largest(history, k));
   }
+}
+
+/// Parts of a history that the wanted results do not depend on.
+[[nodiscard]] LeftOut not_needed_by(const std::vector<std::string>& wanted) {
+  if (wanted.empty()) return {};
+  return {.energies = std::ranges::none_of(wanted, [](std::string_view name) { return is_energy(name.substr(4)); }),
+          .rows = std::ranges::none_of(wanted, [](std::string_view name) { return name.starts_with("max."); })};
 }
 
 [[nodiscard]] std::string messages_of(const ScenarioError& error) {
@@ -115,13 +132,13 @@ void summarise(const Table& history, Headings& headings, Outcome& outcome) {
 void keep_history(const Table& history, const fs::path& file) { write_text_file(file, csv_text(history)); }
 
 /// @param histories  folder for the run's history; empty: it is not kept
-[[nodiscard]] Outcome run_one(const Sweep& sweep, std::size_t index, const fs::path& histories, Headings& headings) {
+[[nodiscard]] Outcome run_one(const Sweep& sweep, std::size_t index, const fs::path& histories, Layout& layout) {
   Outcome outcome;
   outcome.row.run = index + 1;
   std::optional<RunRecord> record;
   try {
     const CheckedScenario scenario = scenario_of(sweep, index);
-    record = histories.empty() ? record_run(scenario) : run_scenario(scenario).record;
+    record = histories.empty() ? record_run(scenario, not_needed_by(sweep.columns)) : run_scenario(scenario).record;
   } catch (const ScenarioError& error) {
     outcome.row.status = "refused";
     outcome.row.reason = plain(messages_of(error));
@@ -132,7 +149,7 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
   if (!record) return outcome;
   outcome.row.status = to_string(record->status);
   outcome.row.reason = plain(record->message);
-  summarise(record->history, headings, outcome);
+  summarise(record->history, sweep.columns, layout, outcome);
   if (!histories.empty()) keep_history(record->history, histories / fmt::format("{}.csv", index + 1));
   return outcome;
 }
@@ -292,11 +309,11 @@ void run_all(const Sweep& sweep, const SweepOptions& options, const std::vector<
   const fs::path histories = sweep.keeps_histories ? options.folder / "histories" : fs::path();
   if (!histories.empty()) fs::create_directories(histories);
   const std::size_t threads = thread_count(options.threads);
-  std::vector<Headings> headings(threads);
+  std::vector<Layout> layouts(threads);
   std::mutex mutex;
   std::size_t done = 0;
   for_each_index(runs.size(), threads, [&](std::size_t i, std::size_t thread) {
-    const Outcome outcome = run_one(sweep, runs[i], histories, headings[thread]);
+    const Outcome outcome = run_one(sweep, runs[i], histories, layouts[thread]);
     const std::scoped_lock lock(mutex);
     journal.append(outcome.row, outcome.columns);
     if (options.progress) options.progress(++done, runs.size());

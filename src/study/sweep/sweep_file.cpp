@@ -21,6 +21,7 @@
 #include "study/formula/constraint.hpp"
 #include "study/formula/expression.hpp"
 #include "study/sweep/band_section.hpp"
+#include "study/sweep/column_section.hpp"
 #include "study/sweep/design_table.hpp"
 #include "study/sweep/factor.hpp"
 #include "study/sweep/joint_normal.hpp"
@@ -65,7 +66,8 @@ class SweepReader {
     read_factors(root);
     if (!root.text("calibration").empty()) read_calibrated(root);
     read_constraints(root);
-    check_results(root);
+    columns_ = sweep::columns_of_results(reading_, root);
+    sweep::check_results(reading_, root);
     if (root.has("bands")) bands_ = sweep::bands_in(reading_, root);
     if (design_ == "table") {
       read_table(root);
@@ -90,6 +92,7 @@ class SweepReader {
             .scenario = std::move(*scenario_),
             .scenario_name = scenario_name_,
             .keeps_histories = bands_.has_value() || root.toggle("histories").value_or(false),
+            .columns = root.texts("columns"),
             .results = root.texts("results"),
             .bands = bands_ ? std::optional(std::move(bands_->request)) : std::nullopt,
             .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
@@ -263,13 +266,6 @@ class SweepReader {
     for (std::size_t i = 0; i < texts.size(); ++i) {
       const SourceLocation where = root.value_place("constraints", i);
       report_at(where, texts[i], [&] { constraints_.push_back({Constraint(texts[i]), texts[i], where}); });
-    }
-  }
-
-  void check_results(const Section& root) {
-    const std::vector<std::string> texts = root.texts("results");
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-      report_at(root.value_place("results", i), texts[i], [&] { static_cast<void>(Expression(texts[i])); });
     }
   }
 
@@ -604,7 +600,9 @@ class SweepReader {
       try {
         const CheckedScenario scenario = scenario_with(*scenario_, factors, runs_[run]);
         for (const auto& [option, curve] : scenario.curves) digested_ += '\n' + curve.text;
-        if (bands_) sweep::check_columns(*bands_, scenario, faults_);
+        // Runs with other words, such as another configuration, may have other columns.
+        if (std::ranges::all_of(factors_, &Factor::is_number)) sweep::check_columns(columns_, scenario, faults_);
+        if (bands_) sweep::check_columns(bands_->columns, scenario, faults_);
         return;
       } catch (const ScenarioError& error) {
         if (own && own->empty()) continue;
@@ -655,6 +653,7 @@ class SweepReader {
   std::vector<PlacedConstraint> constraints_;
   std::vector<std::vector<FactorValue>> raw_;  ///< values of a table
   SweepRuns runs_;
+  std::vector<sweep::PlacedColumn> columns_;
   std::optional<sweep::PlacedBands> bands_;
   std::optional<JointNormal> joint_;
   std::size_t first_calibrated_ = 0;  ///< index of the first factor that is a number of the calibration

@@ -1,5 +1,7 @@
 #include "study/sweep/sweep.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -74,6 +76,13 @@ class SweepFiles : public ::testing::Test {
 
 /// Words first, then numbers.
 std::vector<std::string> overrides_of(const Sweep& sweep, std::size_t run) { return scenario_of(sweep, run).overrides; }
+
+/// Columns of results.csv that are values of histories.
+std::size_t all_result_count(const Table& results) {
+  return static_cast<std::size_t>(std::ranges::count_if(results.columns(), [](const Column& column) {
+    return column.name.starts_with("end.") || column.name.starts_with("max.");
+  }));
+}
 
 double number(const Sweep& sweep, std::size_t run, std::size_t factor) {
   return std::get<double>(sweep.runs[run][factor]);
@@ -369,6 +378,53 @@ TEST_F(SweepFiles, EveryRunIsARowWithEndAndLargestValues) {
   EXPECT_GT(table.column("max.lateral.force")[row], 0.0);
   EXPECT_TRUE(std::isnan(table.column("max.lateral.force")[3])) << "configuration simple has no lateral walls";
   EXPECT_EQ(table.word(3, *table.find("end.lateral.regime")), "nan");
+}
+
+TEST_F(SweepFiles, ColumnsThatAreAskedForAreThoseOfAllColumns) {
+  static_cast<void>(results(read(k_grid), "all"));
+  const Table all = read_csv(path("all") / "results.csv");
+  const std::vector<std::string> names{"end.work", "end.lateral.regime", "max.axial.force", "max.lateral.force"};
+  // With work, without it, and of ends alone: less is computed each time.
+  for (const std::size_t first : {0U, 1U}) {
+    for (const std::size_t count : {4U, 2U, 1U}) {
+      const std::vector<std::string> some(names.begin() + first,
+                                          names.begin() + std::min<std::size_t>(4, first + count));
+      const std::string columns = fmt::format("columns = [\"{}\"]\n", fmt::join(some, "\", \""));
+      const std::string folder = fmt::format("{}-{}", first, count);
+      static_cast<void>(results(read(columns + std::string(k_grid)), folder));
+      const Table table = read_csv(path(folder) / "results.csv");
+      EXPECT_EQ(table.columns().size(), all.columns().size() - (all_result_count(all) - some.size())) << columns;
+      for (const std::string& name : some) {
+        for (std::size_t row = 0; row < all.row_count(); ++row) {
+          if (name == "end.lateral.regime") {
+            EXPECT_EQ(table.word(row, *table.find(name)), all.word(row, *all.find(name)));
+          } else if (std::isnan(all.column(name)[row])) {
+            EXPECT_TRUE(std::isnan(table.column(name)[row]));
+          } else {
+            EXPECT_NEAR(table.column(name)[row], all.column(name)[row], 1e-12 * std::abs(all.column(name)[row]));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_F(SweepFiles, FaultsOfColumnsAreAtTheirPlaces) {
+  const std::string head = "scenario = \"small.toml\"\n";
+  const std::string vary = "[vary]\n\"material.poisson_ratio\" = { from = 0.2, to = 0.3 }\n";
+  EXPECT_EQ(faults_of(head + "columns = [\"axial.force\"]\n" + vary),
+            (std::vector<std::string>{"sweep.toml:2:12: 'axial.force': expected end.COLUMN, the value at the end of a "
+                                      "run, or max.COLUMN, its largest, for example max.axial.force"}));
+  const auto unknown = faults_of(head + "columns = [\"end.time\", \"max.axial.forse\", \"max.axial.regime\"]\n" + vary);
+  ASSERT_EQ(unknown.size(), 2U);
+  EXPECT_TRUE(unknown[0].starts_with("sweep.toml:2:24: 'axial.forse' is no column of the histories")) << unknown[0];
+  EXPECT_TRUE(unknown[1].starts_with("sweep.toml:2:43: 'axial.regime' is no column of the histories")) << unknown[1];
+  EXPECT_EQ(faults_of(head +
+                      "design = \"saltelli\"\nsamples = 4\ncolumns = [\"end.work\"]\n"
+                      "results = [\"end.work + max.axial.force\"]\n" +
+                      vary),
+            (std::vector<std::string>{"sweep.toml:5:12: \"end.work + max.axial.force\": 'max.axial.force' is not in "
+                                      "columns, which leaves out all others"}));
 }
 
 TEST_F(SweepFiles, WhatCannotBeRunIsARowWithTheReason) {

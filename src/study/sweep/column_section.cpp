@@ -1,0 +1,64 @@
+#include "study/sweep/column_section.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "history/recorder.hpp"
+#include "scenario/words.hpp"
+#include "scene/scene.hpp"
+#include "study/formula/expression.hpp"
+
+namespace monograin::sweep {
+
+std::vector<PlacedColumn> columns_of_results(Reading& reading, const Section& root) {
+  std::vector<PlacedColumn> columns;
+  const std::vector<std::string> texts = root.texts("columns");
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const SourceLocation where = root.value_place("columns", i);
+    if (texts[i].starts_with("end.") || texts[i].starts_with("max.")) {
+      columns.push_back({texts[i].substr(4), where, texts[i].starts_with("end.")});
+    } else {
+      reading.faults.add(where, fmt::format("'{}': expected end.COLUMN, the value at the end of a run, or max.COLUMN, "
+                                            "its largest, for example max.axial.force",
+                                            shown(texts[i])));
+    }
+  }
+  return columns;
+}
+
+void check_results(Reading& reading, const Section& root) {
+  const std::vector<std::string> columns = root.texts("columns");
+  const std::vector<std::string> texts = root.texts("results");
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    SourceLocation where = root.value_place("results", i);
+    try {
+      for (const std::string_view name : Expression(texts[i]).names()) {
+        if (columns.empty() || std::ranges::find(columns, name) != columns.end()) continue;
+        reading.faults.add(where, fmt::format("\"{}\": '{}' is not in columns, which leaves out all others",
+                                              shown(texts[i]), shown(name)));
+      }
+    } catch (const ExpressionError& error) {
+      where.column += 1 + error.offset();  // after the quote
+      reading.faults.add(where, fmt::format("\"{}\": {}", shown(texts[i]), error.what()));
+    }
+  }
+}
+
+void check_columns(std::span<const PlacedColumn> columns, const CheckedScenario& scenario, FaultList& faults) {
+  if (columns.empty()) return;
+  const Scene scene = make_scene(scenario);
+  const Table history = Recorder(*scene.system).take_history();
+  for (const auto& [name, where, may_hold_words] : columns) {
+    std::vector<std::string_view> names;
+    for (const Column& column : history.columns()) {
+      if (may_hold_words || !column.holds_words()) names.push_back(column.name);
+    }
+    if (name.empty() || std::ranges::find(names, name) != names.end()) continue;
+    faults.add(where, fmt::format("'{}' is no column of the histories; expected one of {}{}", shown(name),
+                                  listed(names), did_you_mean(name, names)));
+  }
+}
+
+}  // namespace monograin::sweep

@@ -1,0 +1,30 @@
+/// Keys of a sweep file that name columns of histories and results. For readers of TOML files: includes the library.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.hpp"
+#include "scenario/section.hpp"
+
+namespace monograin::sweep {
+
+/// A column of the histories that the file names, and where.
+struct PlacedColumn {
+  std::string name;
+  SourceLocation where;
+  bool may_hold_words = false;
+};
+
+/// The columns of the histories that `columns`, a list of columns of the results, needs. A fault for each entry that
+/// does not begin with "end." or "max.".
+[[nodiscard]] std::vector<PlacedColumn> columns_of_results(Reading& reading, const Section& root);
+
+/// Checks that the formulas in `results` can be read, and name no column that `columns` leaves out.
+void check_results(Reading& reading, const Section& root);
+
+/// Checks that histories of a scenario have the columns, so that a sweep of long runs does not end with that fault.
+void check_columns(std::span<const PlacedColumn> columns, const CheckedScenario& scenario, FaultList& faults);
+
+}  // namespace monograin::sweep
