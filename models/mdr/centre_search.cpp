@@ -31,9 +31,11 @@ constexpr int k_most_sections = 40;
 constexpr double k_rounding_step = 1e-12;
 // Eigenvalue of the stiffness, over the largest one, that is round-off.
 constexpr double k_no_stiffness = 1e-12;
-// Softenings at a fold are equal if they differ by less than this share of their sum: they are accurate to the root of
-// round-off.
-constexpr double k_alike = 1e-6;
+// Softenings at a fold are equal if they differ by less than this share of their sum. The place of the centre there is
+// accurate to the root of the integration error.
+constexpr double k_alike = 1e-2;
+// Components of two normals that differ by less are equal.
+constexpr double k_same_component = 1e-9;
 
 /// Searches between a and b for a point where the function is positive, by golden sections towards its maximum.
 /// @param best  in: a point between a and b with a larger value than both; out: the point with the largest value found
@@ -95,7 +97,7 @@ double round_off_of(const Particle& p, const CentreStiffness& softest) {
 /// the walls in a scenario.
 bool comes_first(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   for (Eigen::Index k = 0; k < one.size(); ++k) {
-    if (std::abs(one[k] - other[k]) > k_alike) return one[k] < other[k];
+    if (std::abs(one[k] - other[k]) > k_same_component) return one[k] < other[k];
   }
   return false;
 }

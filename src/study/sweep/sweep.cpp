@@ -65,7 +65,7 @@ struct Outcome {
 
 /// Which values of a history become cells of results.csv, and their headings: final values, then largest ones.
 struct Layout {
-  std::vector<Column> columns;  ///< of the history
+  std::vector<Column> columns;       ///< of the history
   std::vector<std::size_t> finals;   ///< columns whose final value is a cell
   std::vector<std::size_t> largest;  ///< columns whose largest value is one
   std::string headings;
