@@ -1,4 +1,4 @@
-/// Curves of a run: columns of numbers under their names.
+/// Curves of a run as named columns of numbers.
 #pragma once
 
 #include <cstddef>
@@ -12,39 +12,45 @@ namespace monograin {
 
 class Table;
 
-/// A table of columns, each an array of its own. Copies share their values, which never change; spans into them hold as
-/// long as one of the copies lives. May be read from many threads.
+/// An immutable table of named columns, each a contiguous array with one value per row.
+///
+/// Copies share their values: a span or reference into them is valid as long as one copy lives. Any number of threads
+/// may read one history.
 class History {
  public:
   struct Column {
     std::string name;                 ///< without the unit, e.g. "axial.force"
-    std::string unit;                 ///< SI, "-" of a pure number; empty: it counts, or holds words
-    std::vector<std::string> labels;  ///< of a column of words: its values are indices into them
+    std::string unit;                 ///< SI, "-" for a pure number; empty for a counter or a column of words
+    std::vector<std::string> labels;  ///< if not empty, the column holds words: values are indices into `labels`
     std::vector<double> values;       ///< NaN where a quantity is undefined
   };
 
-  /// No columns.
+  /// A history without columns.
   History();
-  /// Curves of one's own, such as measured ones.
-  /// @throws std::invalid_argument where the columns differ in length
+  /// A history of your own curves, such as measured ones.
+  /// @throws std::invalid_argument if the columns differ in length
   explicit History(std::vector<Column> columns);
-  /// The columns of a table that was recorded.
+  /// A history over a recorded table, which it shares.
   explicit History(std::shared_ptr<const Table> table);
 
   [[nodiscard]] std::size_t row_count() const noexcept;
-  /// Names of the columns, without units, in the order of the files.
+  /// Names of the columns, without units, in the order in which history.csv has them.
   [[nodiscard]] std::vector<std::string_view> names() const;
+  /// True if there is a column of that name, given with or without its unit.
   [[nodiscard]] bool contains(std::string_view name) const noexcept;
 
-  /// @param name  of a column, with or without its unit: "axial.force" or "axial.force[N]"
-  /// @throws std::out_of_range that names the nearest column
+  /// The column of that name: name, unit, labels and values.
+  /// @param name  name of a column, with or without its unit: "axial.force" or "axial.force[N]"
+  /// @throws std::out_of_range for an unknown name; the message suggests the nearest one
   [[nodiscard]] const Column& column(std::string_view name) const;
-  /// Values of a column, one for each row.
+  /// Values of a column in its unit, one for each row; NaN where the quantity is undefined.
+  /// @throws std::out_of_range for an unknown name
   [[nodiscard]] std::span<const double> operator[](std::string_view name) const { return column(name).values; }
-  /// Words of a column, one for each row. @throws std::out_of_range where it holds numbers, too
+  /// Words of a column, one for each row, such as the regimes of a contact.
+  /// @throws std::out_of_range for an unknown name, or a column of numbers
   [[nodiscard]] std::vector<std::string_view> words(std::string_view name) const;
 
-  /// The rows that the columns are made of.
+  /// The recorded table, row by row, that this history reads.
   [[nodiscard]] const Table& table() const noexcept;
 
  private:

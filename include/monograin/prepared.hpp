@@ -1,4 +1,4 @@
-/// Many runs of one scenario that differ in numbers.
+/// Many runs of one scenario with different values of some keys.
 #pragma once
 
 #include <cstddef>
@@ -13,45 +13,52 @@
 
 namespace monograin {
 
+/// Options of PreparedScenario::map().
 struct MapOptions {
-  int threads = 0;  ///< 0: one for each core
-  /// Asked between runs, from the calling thread; true ends the call before its rows are done. May be empty.
+  int threads = 0;  ///< number of threads; 0: one for each core
+  /// Called between runs, always on the calling thread. Returning true ends map() early: no further sample is begun,
+  /// and the status of samples not run stays empty. An empty function never ends it.
   std::function<bool()> stop{};
 };
 
-/// Results of many runs.
+/// Results of PreparedScenario::map(): one row per sample.
 struct MapResult {
-  std::vector<double> values;        ///< row by row, a value for each formula; NaN where a run has none
-  std::vector<std::string> status;   ///< of each row: complete, stopped, failed, refused; empty: it was not done
-  std::vector<std::string> message;  ///< of each row: why it did not complete
+  std::vector<double> values;        ///< shape (samples, formulas), row by row; NaN where a formula has no value
+  std::vector<std::string> status;   ///< per sample: complete, stopped, failed or refused; empty: not run
+  std::vector<std::string> message;  ///< per sample: why it did not complete; empty if it did
 };
 
-/// A scenario that is read once, and run with other values of some keys: the same results, bit by bit, as of a file
-/// with these values in it, in a fraction of the time.
+/// A scenario that is read once and run with different values of some keys.
 ///
-/// Copies share what was read. All functions may be called from many threads.
+/// Results are bitwise equal to those of a file with these values in it, and take a fraction of the time. Copies share
+/// the scenario that was read. All functions may be called from many threads.
 class PreparedScenario {
  public:
-  /// @param keys  of numbers, as Scenario::set() takes them
-  /// @throws ScenarioError with all faults of the scenario, and a key that holds no number
+  /// Reads and checks a scenario.
+  /// @param keys  keys whose values are numbers, spelled as for Scenario::set()
+  /// @throws ScenarioError with all faults of the scenario, or with the keys that do not hold a number
   PreparedScenario(const Scenario& scenario, std::vector<std::string> keys);
 
+  /// The keys that vary, in the order in which run() and map() take their values.
   [[nodiscard]] const std::vector<std::string>& keys() const noexcept;
 
+  /// Runs the scenario with these values.
   /// @param values  in SI units, one for each key
-  /// @throws ScenarioError where the values are not admissible
-  /// @throws std::invalid_argument for another number of values
+  /// @throws ScenarioError if a value is not admissible
+  /// @throws std::invalid_argument if the number of values is not that of the keys
   [[nodiscard]] RunResult run(std::span<const double> values) const;
 
-  /// Runs many samples on many threads and keeps a few results of each. A sample that is refused costs its row only.
+  /// Runs many samples on many threads and returns a few numbers of each. A refused sample does not end the others.
   ///
-  /// Values agree with those of run() to round-off. What the formulas do not read is not computed: the energies, and,
-  /// where every name stands alone in end(), all rows before the last. That takes a fifth of the time of a whole run.
+  /// Values agree with those of run() to round-off. Parts of a history that no formula reads are not computed: the
+  /// energies and, if every name stands alone in end(), all rows before the last. Such a run takes about a fifth of the
+  /// time of a whole one.
   ///
-  /// @param samples   row by row, a value for each key
-  /// @param formulas  over the columns of the history, each with one value: `max(axial.force)`,
-  ///                  `end(apparent_radius) / 1e-3`, with the functions max, min, end, sqrt, ... of figures
-  /// @throws std::invalid_argument for a formula that cannot be read, or samples that are no whole rows
+  /// @param samples   shape (samples, keys), row by row, in SI units
+  /// @param formulas  formulas over the columns of the history with one value each, such as `max(axial.force)` or
+  ///                  `end(apparent_radius) / 1e-3`; functions are those of figures: max, min, end, sqrt, ...
+  /// @throws std::invalid_argument for a formula that cannot be read, names an unknown column or has a value for each
+  ///         row, and if the number of values is not a multiple of the number of keys
   [[nodiscard]] MapResult map(std::span<const double> samples, std::span<const std::string> formulas,
                               const MapOptions& options = {}) const;
 

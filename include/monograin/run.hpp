@@ -1,4 +1,4 @@
-/// Runs a scenario.
+/// Running a scenario, and the result of a run.
 #pragma once
 
 #include <filesystem>
@@ -14,31 +14,33 @@ namespace monograin {
 
 struct Run;
 
-/// How a run has ended, and its curves up to there.
+/// Result of run(): how the run ended, and its curves up to that point.
 class RunResult {
  public:
   explicit RunResult(std::shared_ptr<const Run> run);
 
   RunStatus status = RunStatus::complete;
-  std::string message;                ///< why it stopped or failed
-  std::string limit;                  ///< code of the limit that stopped it, e.g. "walls-meet"; empty: none did
-  std::vector<std::string> warnings;  ///< sentences
-  std::string integrator;             ///< that was used
-  History history;                    ///< a row at each output point, and two around each event
-  History events;                     ///< a row for each event: time, class, event, and the history there
+  std::string message;                ///< why the run stopped or failed; empty if it is complete
+  std::string limit;                  ///< code of the limit that stopped the run, e.g. "walls-meet"; empty: none
+  std::vector<std::string> warnings;  ///< sentences for the user
+  std::string integrator;             ///< name of the integrator that was used
+  History history;                    ///< a row at each output point, and two rows around each event
+  History events;                     ///< a row for each event: time, contact class, event, and the row of the history
 
-  /// Text of run.json: what was run, how, by which versions, and what it took.
+  /// Text of run.json: the scenario, the integrator, versions, warnings and timings.
   [[nodiscard]] std::string json() const;
-  /// Writes history.csv, events.csv and run.json into a folder, whole or not at all, as `monograin run -o` does.
-  /// @throws std::runtime_error naming what cannot be written
+  /// Writes history.csv, events.csv and run.json into a folder, as `monograin run -o` does. Either all files are
+  /// written or none.
+  /// @throws std::runtime_error that names the file or folder that cannot be written
   void save(const std::filesystem::path& folder) const;
 
  private:
   std::shared_ptr<const Run> run_;
 };
 
-/// Runs a scenario. Where the model or the solver ends before the program does, the result says so and nothing is
-/// thrown.
+/// Runs a scenario.
+///
+/// A run that ends early does not throw: RunResult::status is then `stopped` (limit of the model) or `failed` (solver).
 /// @throws ScenarioError with all faults of the scenario
 [[nodiscard]] RunResult run(const Scenario& scenario);
 

@@ -1,4 +1,4 @@
-/// A scenario: what a scenario file says, read from one or set key by key.
+/// A scenario: the keys of a scenario file, read from one or set one by one.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace monograin {
 
-/// A constant of a scenario before anything moves, with the defaults filled in.
+/// A constant of a scenario: a material parameter, or a constant that follows from the material.
 struct Parameter {
   std::string name;
   double value = 0.0;
@@ -21,20 +21,22 @@ struct Parameter {
 
 /// The keys of a scenario and their values.
 ///
-/// Nothing is checked until it is needed: set() takes the keys in any order, validate() tells all faults at once, and
-/// run() refuses a scenario that has any. A copy is independent; a const scenario may be used from many threads.
+/// set() takes keys in any order and checks nothing. validate() returns all faults at once, and run() refuses a
+/// scenario with faults. Copies are independent; many threads may use one const scenario.
 class Scenario {
  public:
   /// A scenario without keys.
   Scenario() = default;
 
-  /// The scenario of a text in TOML.
-  /// @param origin     stands for the file in messages and names the scenario; tables are sought from its folder
-  /// @param overrides  what is set, as `key=value` with a value in TOML: see overrides()
+  /// Makes a scenario of a text in TOML. The text is checked by validate() and run(), not here.
+  /// @param text       content of a scenario file
+  /// @param origin     file name that messages show and that names the scenario; file names in the scenario are
+  ///                   relative to its folder
+  /// @param overrides  keys set on top of the text, as `key=value` with a value in TOML: see overrides()
   [[nodiscard]] static Scenario parse(std::string text, std::string origin = "scenario.toml",
                                       std::vector<std::string> overrides = {});
 
-  /// Sets a key to a number in SI units, a text ("10 mm", "die"), a switch, or a list. The last value of a key counts.
+  /// Sets a key to a number in SI units, a text ("10 mm", "die"), a switch, or a list. The last value set wins.
   ///
   /// @param key  as in a scenario file, tables joined by dots: `material.youngs_modulus`. An index in brackets picks
   ///             from an array, counted from 0: `loading.steps[0].displacement`. One past the end appends an entry.
@@ -49,16 +51,19 @@ class Scenario {
   }
   Scenario& set(std::string_view key, std::span<const std::string> texts);
 
-  /// All faults: unknown and missing keys, types, units, ranges, values that do not go together. Empty: it can be run.
+  /// All faults: unknown and missing keys, types, units, ranges, inconsistent values. Empty: the scenario can be run.
   [[nodiscard]] std::vector<Fault> validate() const;
 
-  /// Material and what follows from it, defaults filled in, as `monograin models NAME --parameters` prints it.
+  /// Parameters of particle and material, defaults filled in, and the constants that follow from them, as
+  /// `monograin models NAME --parameters` prints them.
   /// @throws ScenarioError with all faults
   [[nodiscard]] std::vector<Parameter> parameters() const;
 
+  /// Text of the scenario file, without overrides; empty if there is none.
   [[nodiscard]] const std::string& text() const noexcept { return text_; }
+  /// File name that messages show and that names the scenario.
   [[nodiscard]] const std::string& origin() const noexcept { return origin_; }
-  /// Keys that were set, as `key=value`, in this order.
+  /// Keys that were set, as `key=value` with a value in TOML, in the order of the calls.
   [[nodiscard]] const std::vector<std::string>& overrides() const noexcept { return overrides_; }
 
  private:
@@ -69,8 +74,8 @@ class Scenario {
   std::vector<std::string> overrides_;
 };
 
-/// Reads a scenario file. What it says is checked by validate() and by run().
-/// @throws ScenarioError where the file cannot be read
+/// Reads a scenario file. Its content is checked by validate() and run(), not here.
+/// @throws ScenarioError if the file cannot be read
 [[nodiscard]] Scenario read_scenario(const std::filesystem::path& file);
 
 }  // namespace monograin

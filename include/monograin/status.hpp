@@ -1,16 +1,18 @@
-/// How a run ends.
+/// Status with which a run ends.
 #pragma once
 
 #include <string_view>
 
 namespace monograin {
 
+/// Status with which a run ends.
 enum class RunStatus {
-  complete,
-  stopped,  ///< left the model's domain
-  failed    ///< the solver gave up
+  complete,  ///< the program was run to its end
+  stopped,   ///< the run reached a limit of the model's domain
+  failed     ///< the solver gave up
 };
 
+/// Name of a status, as run.json has it: "complete", "stopped" or "failed".
 [[nodiscard]] std::string_view to_string(RunStatus status) noexcept;
 
 }  // namespace monograin
