@@ -9,7 +9,7 @@ namespace {
 using std::string;
 using std::string_view;
 
-/// The text with every occurrence of a part replaced.
+/// Replaces every occurrence of a part of the text.
 string replaced(string text, string_view part, string_view by) {
   for (std::size_t at = text.find(part); at != string::npos; at = text.find(part, at + by.size())) {
     text.replace(at, part.size(), by);
@@ -17,7 +17,7 @@ string replaced(string text, string_view part, string_view by) {
   return text;
 }
 
-/// "A and B and C" as "A, B and C".
+/// Joins the authors for reading: "A and B and C" becomes "A, B and C".
 string listed_authors(string_view authors) {
   constexpr string_view k_and = " and ";
   const std::size_t last = authors.rfind(k_and);
@@ -25,7 +25,7 @@ string listed_authors(string_view authors) {
   return replaced(string(authors.substr(0, last)), k_and, ", ").append(authors.substr(last));
 }
 
-/// Letters of the entries that ASCII lacks.
+/// Letters of the entries outside ASCII, with their TeX commands.
 constexpr auto k_tex_letters = std::to_array<std::pair<string_view, string_view>>(
     {{"Å", "{\\AA}"}, {"å", "{\\aa}"}, {"ö", "{\\\"o}"}, {"ü", "{\\\"u}"}, {"—", "---"}});
 
@@ -66,7 +66,7 @@ string bibtex(const Citation& c) {
     if (!value.empty()) text.append(",\n  ").append(name).append(" = {").append(value).append("}");
   };
   add("author", in_tex(c.authors));
-  add("title", "{" + in_tex(c.title) + "}");  // inner braces: a style does not change capitals
+  add("title", "{" + in_tex(c.title) + "}");  // inner braces keep a style from changing capitals
   add(c.kind == Citation::Kind::thesis ? "school" : "journal", in_tex(c.venue));
   const std::size_t bracket = c.volume.find('(');
   add("volume", string(c.volume.substr(0, bracket)));

@@ -9,22 +9,22 @@ namespace monograin {
 /// A publication. Fields that are not known, or do not apply, are empty.
 struct Citation {
   enum class Kind { article, thesis, manuscript };
-  std::string_view key;      ///< of the BibTeX entry
-  std::string_view authors;  ///< initials and family name each, with " and " between them
+  std::string_view key;      ///< key of the BibTeX entry
+  std::string_view authors;  ///< initials and family name of each author, with " and " between authors
   std::string_view title;
-  std::string_view venue;   ///< journal; of a thesis, the university
-  std::string_view volume;  ///< with the issue in brackets
-  std::string_view pages;   ///< or the number of the article
+  std::string_view venue;   ///< journal, or the university of a thesis
+  std::string_view volume;  ///< volume, with the issue in brackets
+  std::string_view pages;   ///< page range, or the article number
   std::string_view year;
   std::string_view doi;
   Kind kind = Kind::article;
 };
 
-/// The entry as one line of UTF-8: authors (year), title, venue volume, pages, DOI. A missing year is "n.d.".
+/// A publication as one line of UTF-8: authors (year), title, venue volume, pages, DOI. A missing year is "n.d.".
 [[nodiscard]] std::string citation_text(const Citation& citation);
 
-/// The entry as BibTeX, in ASCII: letters with marks as TeX writes them, and no field that is empty. It ends with a
-/// line break.
+/// A publication as a BibTeX entry in ASCII, with a line break at the end. Accented letters are TeX commands; empty
+/// fields are left out.
 [[nodiscard]] std::string bibtex(const Citation& citation);
 
 /// Sources of the models.

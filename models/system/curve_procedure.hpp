@@ -11,7 +11,7 @@
 
 namespace monograin {
 
-/// Fit by one procedure, with the error measures of its source.
+/// Parameters that a procedure has found, with the error measures of its source.
 struct ProcedureFit {
   std::string procedure;
   std::vector<double> parameters;  ///< in the order of the procedure's keys
@@ -19,21 +19,23 @@ struct ProcedureFit {
   double peak_error = 0.0;
 };
 
-/// Displacements over R0 and forces over the procedure's unit.
+/// A curve of forces, over CurveProcedure::force_unit, against displacements over R0.
 struct ForceCurve {
   std::span<const double> displacement;
   std::span<const double> force;
 };
 
+/// A source's procedure as functions.
 struct CurveProcedure {
-  std::span<const std::string_view> keys;        ///< that it finds, as of `--set`
-  std::span<const std::string_view> fixed_keys;  ///< that must not be free, because the unit of force depends on them
-  double (*force_unit)(const ModelInput& input) = nullptr;  ///< [N]
-  /// Fits to the first loading, the best one last; none where there is none.
+  std::span<const std::string_view> keys;        ///< keys that the procedure determines, spelled as for `--set`
+  std::span<const std::string_view> fixed_keys;  ///< keys that must not be free: the unit of force depends on them
+  double (*force_unit)(const ModelInput& input) = nullptr;  ///< unit of ForceCurve::force [N]
+  /// Fits the parameters to the first loading, by each variant of the procedure; the best fit is last. Empty if no fit
+  /// exists.
   std::vector<ProcedureFit> (*fit)(const ForceCurve& loading) = nullptr;
-  /// Measures parameters that are given as those of a fit are measured.
+  /// Computes the error measures of given parameters, as fit() does for the fitted ones.
   ProcedureFit (*measure)(const ForceCurve& loading, std::span<const double> parameters) = nullptr;
-  /// Values of further keys, from the first unloading [SI].
+  /// Estimates values of further keys [SI] from the first unloading, as starting values of a calibration.
   std::map<std::string, double> (*unloading_starts)(const ModelInput& input, const ForceCurve& unloading) = nullptr;
 };
 

@@ -1,11 +1,11 @@
-/// What makes the equations of a model hard to integrate.
+/// Causes that make the equations of a model hard to integrate.
 #pragma once
 
 #include <string_view>
 
 namespace monograin {
 
-/// What an integrator that gives up has met. The model asks for it at the state where that happened.
+/// Why an integrator has given up. The model finds the cause from the state at which the integrator stopped.
 enum class Difficulty {
   below_resolution,          ///< the deepest contact of the program is round-off
   stiff_material,            ///< stresses are small differences of strains
@@ -15,7 +15,7 @@ enum class Difficulty {
   soft_centre                ///< the tangent stiffness of the free centre nearly vanishes
 };
 
-/// The message for a difficulty, and what to do; no full stop.
+/// The message for a difficulty: the cause, and what the user can do. No full stop at the end.
 [[nodiscard]] std::string_view advice(Difficulty difficulty) noexcept;
 
 }  // namespace monograin

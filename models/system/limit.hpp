@@ -1,4 +1,4 @@
-/// Where the equations of a model end.
+/// Limits of the models: states beyond which the equations have no solution.
 #pragma once
 
 #include <limits>
@@ -8,7 +8,7 @@
 
 namespace monograin {
 
-/// Why a run ends before its program does: one value for each cause, whatever has found it, a guard or a trial.
+/// Cause that ends a run before its program ends. A cause has one value, whether a guard or a trial step has met it.
 enum class Limit {
   // particle and walls
   free_surface_used_up,
@@ -44,7 +44,7 @@ enum class Limit {
   greatest_stress,
   infinite_stress,
   // any model
-  no_solution,       ///< a state was not found, though no limit of the model is known there
+  no_solution,       ///< the solver found no state, and no limit of the model explains it
   unequal_durations  ///< the program gives walls different times for one step
 };
 
@@ -54,27 +54,27 @@ enum class Limit {
 /// The message for a limit; no full stop.
 [[nodiscard]] std::string_view sentence(Limit limit) noexcept;
 
-/// A limit of a model, and the number that shows that it is met.
+/// A limit that a run has met, with the value of the quantity that shows it.
 struct LimitPoint {
   Limit limit = Limit::no_solution;
   int contact_class = -1;       ///< -1: the particle
-  std::string_view quantity{};  ///< what the value is, e.g. "displacement/R0"; empty: there is none
+  std::string_view quantity{};  ///< name of the quantity, e.g. "displacement/R0"; empty: the limit has no value
   double value = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The sentence of a limit, with a remark and its value where there are such, e.g. "the walls meet (displacement/R0 =
-/// 1)".
+/// Message for a limit point: the sentence of the limit, a remark if there is one, and the value if there is one, such
+/// as "the walls meet (displacement/R0 = 1)".
 [[nodiscard]] std::string text_of(const LimitPoint& point, std::string_view remark = {});
 
-/// The equations have no value beyond a limit. Thrown by trials as well as by states; a caller comes nearer by smaller
-/// steps, or ends.
+/// Thrown if the equations are evaluated beyond a limit, in a trial step as well as in an accepted state. The caller
+/// approaches the limit with smaller steps, or ends the run.
 class DomainError : public std::domain_error {
  public:
   explicit DomainError(const LimitPoint& point);
   explicit DomainError(Limit limit) : DomainError(LimitPoint{.limit = limit}) {}
-  /// @param remark  stands behind the sentence of the limit: what to do
+  /// @param remark  advice for the user that follows the sentence of the limit
   DomainError(const LimitPoint& point, std::string_view remark);
-  /// @param message  says more than sentence(limit) does
+  /// @param message  replaces sentence(limit) with a more precise text
   DomainError(Limit limit, const std::string& message);
 
   [[nodiscard]] const LimitPoint& point() const noexcept { return point_; }
@@ -83,7 +83,7 @@ class DomainError : public std::domain_error {
   LimitPoint point_;
 };
 
-/// The error itself, or one of Limit::no_solution with its message.
+/// Returns a DomainError as it is, and wraps any other std::domain_error as Limit::no_solution with its message.
 [[nodiscard]] DomainError as_domain_error(const std::domain_error& error);
 
 }  // namespace monograin

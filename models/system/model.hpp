@@ -1,9 +1,9 @@
-/// A model is one value, made in the folder of its law.
+/// Definition of a model as one value of type Model, made in the folder of its law.
 ///
-/// The data say what the model is called, which keys it reads, which regimes and events it knows, and where it comes
-/// from: reading and checking scenario files, the JSON Schema and `monograin models` are made from them, so that a key
-/// is described in one place only. The functions make equations of a checked scenario, say how far a program goes, draw
-/// scenes of the stress test and check their histories. The workbench knows models by these alone, none by its name.
+/// The data give the name, keys, regimes, events and sources of the model. The reader of scenario files, the JSON
+/// Schema and `monograin models` use these data, so that each key is described once. The functions turn a checked
+/// scenario into equations, bound how far a program goes, draw scenes for the stress test and check their histories.
+/// The workbench uses only this value and refers to no model by name.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@
 
 namespace monograin {
 
-/// Physical dimension of a quantity; fixes which unit strings are accepted (a bare number is always SI).
+/// Physical dimension of a quantity. It fixes which unit strings are accepted; a bare number is always in SI units.
 enum class Dimension {
   none,
   length,
@@ -41,7 +41,7 @@ enum class Dimension {
   stress_rate
 };
 
-/// Interval of admissible values; the bounds belong to it unless they are marked open.
+/// Interval of admissible values. It contains its bounds unless they are marked open.
 struct Range {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
@@ -60,7 +60,7 @@ inline constexpr Range k_poisson_to_half{.lower = -1.0, .upper = 0.5, .lower_is_
 /// Poisson's ratio of compressible material.
 inline constexpr Range k_poisson_below_half{.lower = -1.0, .upper = 0.5, .lower_is_open = true, .upper_is_open = true};
 
-/// Wall sets of models in which walls may stand anywhere.
+/// Wall sets that a scenario may name if the model allows walls in any position.
 inline constexpr std::array<std::string_view, 5> k_wall_configurations{"simple", "die", "hydrostatic", "oblique-die",
                                                                        "walls"};
 
@@ -80,37 +80,38 @@ struct OptionKey {
   std::string_view name;
   std::string_view meaning;
   Kind kind = Kind::choice;
-  std::span<const std::string_view> choices;  ///< of a choice; the first one is the default
-  bool default_toggle = false;
-  Dimension dimension = Dimension::none;  ///< of a quantity, as its range and default
-  Range range{};
-  std::optional<double> default_value{};  ///< none: the quantity may be absent
-  /// The columns of a table that is not a curve of two. No two rows have the same first two values.
+  std::span<const std::string_view> choices;  ///< words of a choice; the first one is the default
+  bool default_toggle = false;                ///< default of a toggle
+  Dimension dimension = Dimension::none;      ///< dimension of a quantity
+  Range range{};                              ///< admissible values of a quantity
+  std::optional<double> default_value{};      ///< default of a quantity; none: the quantity may be absent
+  /// Columns of a file with a table of values over x and y; empty for a curve of two columns. No two rows of the table
+  /// have the same x and y.
   std::span<const QuantityKey> columns{};
-  std::string (*example)() = nullptr;  ///< of a file: what one may hold
+  std::string (*example)() = nullptr;  ///< content of an example file
 };
 
-/// A ramp that a step of a model without walls may prescribe; its name is the step's key.
+/// A controlled quantity that a step of a model without walls may prescribe; its name is the key in the step.
 struct DriveKey {
   std::string_view name;
   std::string_view meaning;
   Control control = Control::strain;
   Dimension dimension = Dimension::none;
   Range range;
-  std::string_view example;  ///< as written in a file
-  /// `[axial, lateral]` stands for a value of this key and one that controls the same in the second channel.
+  std::string_view example;  ///< value as written in a scenario file
+  /// True if the key also takes `[axial, lateral]`: targets of this quantity in the first and the second channel.
   bool may_take_lateral = false;
-  std::string_view column{};  ///< of the history, that shows what it prescribes; empty: that of its name
+  std::string_view column{};  ///< column of the history with the controlled quantity; empty: the column named `name`
 };
 
-/// A material of a source's table: values of keys in `[material]`, not of all of them.
+/// A named material from a table of the source: values of some keys in `[material]`.
 struct Preset {
   struct Value {
     std::string_view key;
     double value = 0.0;  ///< [SI]
   };
   std::string_view name;
-  std::string_view source;  ///< table
+  std::string_view source;  ///< table of the source
   std::span<const Value> values;
 };
 
@@ -120,7 +121,7 @@ struct Term {
   std::string_view meaning;
 };
 
-/// The end of the ramp that a step prescribes one channel.
+/// Control and target of the ramp that a step prescribes for one channel.
 struct Prescription {
   Control control = Control::displacement;
   double target = 0.0;  ///< [SI]
@@ -128,52 +129,54 @@ struct Prescription {
 
 /// A step of the program of a model without walls, cycles written out.
 struct PlannedStep {
-  std::optional<Prescription> first{};    ///< none: what is controlled is kept
-  std::optional<Prescription> lateral{};  ///< of the second channel; none: it keeps its value
-  bool may_end_early = false;             ///< has a condition
+  std::optional<Prescription> first{};    ///< first channel; none: the controlled quantity keeps its value
+  std::optional<Prescription> lateral{};  ///< second channel; none: the controlled quantity keeps its value
+  bool may_end_early = false;             ///< true if the step has a condition
 };
 
-/// A curve given by samples, in a file that an option names; or, of a table with more columns, values over x and y.
+/// Samples from a file that an option names: a curve y(x), or a table of values over x and y.
 struct SampledCurve {
   std::string text;  ///< the file as it was read
   std::vector<double> x;
   std::vector<double> y;
-  std::vector<std::vector<double>> values{};  ///< further columns, in the order of the option's; of a curve: none
+  std::vector<std::vector<double>> values{};  ///< further columns of a table, in the order of OptionKey::columns
 };
 
+/// Value of an option: toggle, quantity [SI], or the word of a choice or file name.
 using OptionValue = std::variant<bool, double, std::string>;
 
-/// A scenario as its model sees it; each value is right by itself.
+/// A scenario as its model sees it. Each value alone is admissible; Model::objections checks them together.
 struct ModelInput {
   double radius = 0.0;                                ///< R0 [m]; 0 where the model has no particle
-  const std::map<std::string, double>& values;        ///< of the keys in `[material]` [SI]
-  const std::map<std::string, OptionValue>& options;  ///< defaults filled in
-  const std::map<std::string, SampledCurve>& curves;  ///< by option: what the files hold that options name
+  const std::map<std::string, double>& values;        ///< values of the keys in `[material]` [SI]
+  const std::map<std::string, OptionValue>& options;  ///< options by name, defaults filled in
+  const std::map<std::string, SampledCurve>& curves;  ///< content of the files, by the option that names the file
   std::string_view configuration{};                   ///< empty where the model has none
   bool centre_is_free = false;
-  std::vector<PlannedStep> program{};  ///< empty where there are walls
-  std::string_view integrator{};       ///< as asked for
+  std::vector<PlannedStep> program{};  ///< program of a model without walls; empty with walls
+  std::string_view integrator{};       ///< integrator that the scenario names, before `auto` is resolved
 
-  /// Value of a key in `[material]`. @throws std::out_of_range where it has none
+  /// Value of a key in `[material]` [SI]. @throws std::out_of_range if the scenario has no such key
   [[nodiscard]] double material(const char* key) const { return values.at(key); }
+  /// Value of a key in `[material]` [SI]; none if the scenario has no such key.
   [[nodiscard]] std::optional<double> optional_material(const char* key) const {
     const auto found = values.find(key);
     return found == values.end() ? std::nullopt : std::optional(found->second);
   }
-  /// Value of an option of kind quantity; none where it is absent.
+  /// Value of an option of kind quantity [SI]; none if it is absent.
   [[nodiscard]] std::optional<double> number(const char* key) const {
     const auto found = options.find(key);
     return found == options.end() ? std::nullopt : std::optional(std::get<double>(found->second));
   }
-  /// Word of an option of kind choice, or file name.
+  /// Word of an option of kind choice, or file name of an option of kind file.
   [[nodiscard]] const std::string& word(const char* key) const { return std::get<std::string>(options.at(key)); }
   [[nodiscard]] bool toggle(const char* key) const { return std::get<bool>(options.at(key)); }
   [[nodiscard]] const SampledCurve* curve(const char* key) const {
     const auto found = curves.find(key);
     return found == curves.end() ? nullptr : &found->second;
   }
-  /// One of an option's words as the enumerator at the same position.
-  /// @throws std::logic_error for a word that the list does not have
+  /// Value of an option of kind choice as an enumerator, by a table of words and enumerators.
+  /// @throws std::logic_error if the table lacks the word
   template <class Enum, std::size_t N>
   [[nodiscard]] Enum choice(const char* key, const std::pair<const char*, Enum> (&table)[N]) const {
     for (const auto& [name, value] : table) {
@@ -183,47 +186,48 @@ struct ModelInput {
   }
 };
 
-/// Why values do not go together.
+/// A fault of a scenario whose values are inconsistent, though each is admissible.
 struct Objection {
-  std::string_view key;  ///< in `[material]`, in the model's own table, or `configuration`
+  std::string_view key;  ///< key in `[material]` or in the model's own table, or `configuration`
   std::string message;
-  std::optional<std::size_t> step{};  ///< of the program; the fault is shown at this step, not at the key
+  std::optional<std::size_t> step{};  ///< index of a step; if given, the message points to this step, not to the key
 };
 
-/// Walls of a scene and their ramps in the first step; a wall that holds has a ramp that ends where it starts.
+/// Contact classes of a scene and their ramps in the first step. The ramp of a wall at rest ends where it starts.
 struct FirstStep {
   std::span<const ContactClass> classes;
-  std::span<const Ramp> ramps;  ///< of each class [SI]
+  std::span<const Ramp> ramps;  ///< one for each class [SI]
 };
 
-/// A constant that follows from a scenario's material before anything moves.
+/// A constant that follows from the material of a scenario, before the program starts.
 struct DerivedParameter {
   std::string_view name;
   double value = 0.0;
   std::string_view unit;
-  std::string_view symbol{};  ///< in the source; empty: none
+  std::string_view symbol{};  ///< symbol in the source; empty: none
 };
 
-/// Values of those keys of `[material]` that a scenario has, each with its unit.
+/// Lists keys of `[material]` with their values, as constants with the given units. Keys that the scenario lacks are
+/// left out.
 [[nodiscard]] std::vector<DerivedParameter> material_parameters(
     const ModelInput& input, std::initializer_list<std::pair<const char*, std::string_view>> keys);
 
-/// A value that the steps of a model without walls prescribe, before the first of them.
+/// A channel of a model without walls, at rest before the first step.
 struct RestingChannel {
   std::string_view name;
-  Ramp at_rest;
-  bool is_lateral = false;     ///< follows the lateral parts of the steps
-  bool bears_nothing = false;  ///< every other quantity that a step may prescribe is zero there
+  Ramp at_rest;                ///< constant ramp of the quantity that is controlled at rest [SI]
+  bool is_lateral = false;     ///< true for the second channel, which follows the lateral parts of the steps
+  bool bears_nothing = false;  ///< true if every other quantity that a step may prescribe is zero at rest
 };
 
-/// Ludwik's law sigma = Y + K eps_pl^(1/n) up to a strain.
+/// Ludwik's law sigma = Y + K eps_pl^(1/n), with the strain up to which a power law has to stand for it.
 struct LudwikInput {
   double youngs_modulus = 0.0;  ///< [Pa]; infinite: rigid
   double yield_stress = 0.0;    ///< Y [Pa]
   double strength = 0.0;        ///< K [Pa]
   double exponent = 0.0;        ///< 1/n
-  double largest_strain = 0.0;
-  bool fits_both = true;  ///< strength and exponent; false: the exponent, with the strength Y + K
+  double largest_strain = 0.0;  ///< end of the fit
+  bool fits_both = true;        ///< true: fit strength and exponent; false: fit the exponent, with the strength Y + K
 };
 
 /// sigma = strength eps^exponent.
@@ -242,76 +246,78 @@ struct DrawnStep;
 struct ProgramBounds;
 struct Violation;
 
-/// A model, as users read about it and as the workbench runs it.
+/// A model: its description for users, and its functions for the workbench.
 struct Model {
   std::string_view name;
   std::string_view summary;
-  /// Sources of the model, the main one first.
+  /// Publications of the law, the main one first.
   std::span<const Citation* const> references{};
-  /// Where in the references the law stands, and which of their misprints are corrected.
+  /// Equations of the references that give the law, and the misprints that are corrected.
   std::string_view source{};
   std::span<const QuantityKey> material;
   std::span<const OptionKey> options{};
-  std::span<const std::string_view> configurations{};  ///< empty: there is nothing to choose from
-  bool has_free_centre = false;                        ///< `[loading] centre = "equilibrium"` is defined
-  bool has_contact_area = true;  ///< there are contact radii, pressures, and a surface that may move
-  bool has_profile = false;      ///< pressure and surface under a contact are known
+  std::span<const std::string_view> configurations{};  ///< wall sets that a scenario may name; empty: no choice
+  bool has_free_centre = false;                        ///< true if `[loading] centre = "equilibrium"` is allowed
+  bool has_contact_area = true;  ///< true if the law has contact radii, pressures, and a surface that may move
+  bool has_profile = false;      ///< true if HybridSystem::surface() gives pressure and surface under a contact
   std::span<const Term> regimes{};
   std::span<const Term> events{};
   std::span<const std::string_view> domain;       ///< limits of validity, a sentence each
-  double least_wall_angle = 0.0;                  ///< [rad], between any two walls
-  std::span<const OptionKey> material_options{};  ///< options that stand in `[material]`
-  /// Materials that `preset` in `[material]` may name. Keys that are given beside it win.
+  double least_wall_angle = 0.0;                  ///< smallest admissible angle between the normals of two walls [rad]
+  std::span<const OptionKey> material_options{};  ///< options in the table `[material]`
+  /// Materials that the key `preset` in `[material]` may name. Keys given beside `preset` override its values.
   std::span<const Preset> presets{};
-  std::string_view sign{};  ///< convention of stresses and strains, where it is not that compression is positive
-  /// Quantities that steps prescribe of a model without particle and walls; empty: it has both.
+  std::string_view sign{};  ///< sign convention of stresses and strains; empty: compression is positive
+  /// Quantities that a step prescribes in a model without particle and walls; empty: the model has particle and walls.
   std::span<const DriveKey> drives{};
-  /// Quantities that such a step can prescribe in a second channel, under keys of their own.
+  /// Quantities that a step prescribes in the second channel of a model without walls, under keys of their own.
   std::span<const DriveKey> lateral_drives{};
-  /// Quantities that such a step can wait for, besides events.
+  /// Quantities that a condition of a step in a model without walls can wait for, besides events.
   std::span<const QuantityKey> conditions{};
 
-  /// Parts of other models that this one does not have, for the record of a run.
+  /// Parts of other models that this model lacks; run.json lists them.
   std::span<const std::string_view> skipped{};
-  /// True if a contact moves the surface under the other walls, so that their overlap need not be a contact.
+  /// True if a contact moves the surface under the other walls, so that the sign of an overlap does not show a contact.
   bool moves_surface = false;
-  /// True if a wall cannot pull: a step that prescribes a negative force ends the run.
+  /// True if walls cannot pull, and a step that prescribes a negative force ends the run.
   bool stops_when_pulled = false;
 
   // --- functions
 
-  /// Lists the values that do not go together. Null: any go together.
+  /// Lists inconsistent values. Null: any admissible values are consistent.
   std::vector<Objection> (*objections)(const ModelInput& input) = nullptr;
-  /// Finds the `strength` and the `hardening_exponent` that stand for Ludwik's law. Null: the model has no `ludwik`.
+  /// Fits `strength` and `hardening_exponent` to Ludwik's law. Null: the model has no key `ludwik`.
   PowerLaw (*power_law_of)(const LudwikInput& ludwik) = nullptr;
-  /// Makes the equations over contact classes, which are empty where there are no walls. Never null.
+  /// Makes the equations for contact classes; `classes` is empty for a model without walls. Never null.
+  /// @param reach  largest displacement and force that the program prescribes
   std::unique_ptr<HybridSystem> (*bind)(const ModelInput& input, std::vector<ContactClass> classes,
                                         const Reach& reach) = nullptr;
-  /// Says where a model without walls starts. Null: the model has walls.
+  /// Lists the channels of a model without walls. Null: the model has walls.
   std::vector<RestingChannel> (*channels)(const ModelInput& input) = nullptr;
-  /// Lists constants that follow from the material. Null: there are none.
+  /// Lists the constants that follow from the material. Null: there are none.
   std::vector<DerivedParameter> (*parameters)(const ModelInput& input, const FirstStep& step) = nullptr;
-  /// Says how far a contact is pressed, at most, that meets a condition for the first time; infinite where only a run
-  /// can tell. Null: a condition on a displacement or a force says it itself, others do not.
+  /// Upper bound of displacement and force at which a contact first meets a condition; infinite if only a run can show
+  /// it. Null: only conditions on a displacement or a force have a bound, their value.
   Reach (*reach)(const ModelInput& input, const Until& until) = nullptr;
-  /// Tells whether walls may go back. Null: they may.
+  /// True if the law has an unloading branch. Null: it has one.
   bool (*can_unload)(const ModelInput& input) = nullptr;
-  /// Tells whether unloading goes back on the loading curve, so that all work is stored. Null: it does not.
+  /// True if unloading retraces the loading curve, so that all work is stored. Null: it does not.
   bool (*is_elastic)(const ModelInput& input) = nullptr;
   /// Draws material, options and bounds of a program for the stress test. Never null.
   ProgramBounds (*draw)(Dice& dice, DrawnMaterial& drawn) = nullptr;
-  /// Draws the program of such a scene. Null: a program of walls is drawn.
+  /// Draws the program of a stress-test scene without walls. Null: the stress test draws a program of walls.
   std::vector<DrawnStep> (*draw_program)(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,
                                          std::size_t count) = nullptr;
-  /// Checks what must hold of every history of this model alone. Null: nothing is checked beside what holds for all.
+  /// Checks the rules that every history of this model has to meet. Null: only the rules for all models are checked.
   void (*check)(const CheckedRun& run, std::vector<Violation>& found) = nullptr;
-  /// Tells whether a column may be without a value in a row. Null: none may.
+  /// True if a column may be undefined (NaN) in a row. Null: no column may.
   bool (*may_be_undefined)(const CheckedRun& run, std::size_t row, std::string_view column) = nullptr;
-  /// The source's own procedure for finding parameters from a curve. Null: there is none.
+  /// Procedure of the source that finds parameters from a measured curve. Null: there is none.
   const CurveProcedure* curve_procedure = nullptr;
-  /// Where the model's pull-off can be trusted. Null: it says nothing about that.
+  /// Map of the materials for which the model's pull-off can be trusted. Null: there is none.
   const AdhesionMap* adhesion_map = nullptr;
 
+  /// True if the model has a particle and walls; false for a material point or a packing.
   [[nodiscard]] bool has_walls() const noexcept { return drives.empty(); }
 };
 

@@ -7,7 +7,8 @@
 
 namespace monograin {
 
-/// A number with so many significant digits; 0: the shortest text that reads back as the same number.
+/// A number as text, independent of the locale.
+/// @param digits  significant digits; 0: as few as read back as the same number
 [[nodiscard]] inline std::string number_text(double value, int digits = 0) {
   std::array<char, 32> text{};
   char* const end = text.data() + text.size();

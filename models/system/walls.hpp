@@ -1,5 +1,4 @@
-/// What the models see of a program: contact classes of walls, and what a step prescribes them, a packing or a material
-/// point.
+/// The program as models see it: contact classes of walls, controlled quantities, conditions and ramps.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,21 +7,23 @@
 
 namespace monograin {
 
-/// Walls that share the same history. One of them is computed; it counts as often as the class has walls.
+/// Contact class: walls that have the same history by symmetry. One wall is computed, and counts as often as the class
+/// has walls.
 struct ContactClass {
   std::string name;
   std::vector<Eigen::Vector3d> normals;  ///< unit, outward, one per wall; never empty
   double gap = 0.0;                      ///< distance from the undeformed particle at the start [m], >= 0
-  bool takes_force = false;              ///< whether the program ever prescribes its force
+  bool takes_force = false;              ///< true if any step of the program prescribes its force
 
+  /// Number of walls of the class.
   [[nodiscard]] double multiplicity() const noexcept { return static_cast<double>(normals.size()); }
 };
 
-/// What is prescribed: at a wall its displacement, towards the centre positive [m], or the force of one wall,
-/// compression positive [N]; elsewhere a strain, a stress [Pa] or a packing fraction, with the signs of their model.
+/// Controlled quantity. At a wall: its displacement [m], positive towards the centre, or the force of one wall [N],
+/// positive in compression. Without walls: a strain, a stress [Pa] or a packing fraction, with the signs of the model.
 enum class Control { displacement, force, strain, stress, packing_fraction };
 
-/// Quantities that a program's condition can ask for; the last three at a material point.
+/// Quantities that a condition of the program can compare with a value; the last three belong to a material point.
 enum class Quantity {
   force,
   displacement,
@@ -34,19 +35,19 @@ enum class Quantity {
   relative_density
 };
 
-/// A condition that ends a step before its time: a quantity reaches a value, or an event happens.
+/// A condition that ends a step early: a quantity reaches a value, or an event happens.
 struct Until {
   Quantity quantity = Quantity::force;
   double value = 0.0;   ///< [SI]
-  std::string event{};  ///< its name; empty: the condition is the quantity's
+  std::string event{};  ///< name of the event to wait for; empty: wait for the quantity
 
   [[nodiscard]] bool is_event() const noexcept { return !event.empty(); }
-  /// Whether it is that quantity which is to reach the value.
+  /// True if the condition waits for this quantity to reach its value.
   [[nodiscard]] bool is_of(Quantity other) const noexcept { return !is_event() && quantity == other; }
   [[nodiscard]] bool operator==(const Until&) const = default;
 };
 
-/// How far a program goes with any wall; 0 where it prescribes no such thing.
+/// Largest values that a program prescribes for any wall; 0 for a quantity that the program does not control.
 struct Reach {
   double displacement = 0.0;  ///< [m]
   double force = 0.0;         ///< [N]
