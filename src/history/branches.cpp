@@ -11,15 +11,15 @@
 namespace monograin {
 namespace {
 
-constexpr double k_slope_share = 0.05;         ///< of the force at the reversal, by which it falls for the slope
-constexpr double k_same_reversal = 0.01;       ///< share of x within which two reversals are one
-constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< loading beyond the last reversal, relative to its x
-constexpr double k_round_off = 1e-12;          ///< share of the force at the reversal that is none
-constexpr double k_same_end = 1e-6;            ///< share of x within which two ends are one
-constexpr std::size_t k_short_way = 2;         ///< steps of a way that may be noise
-constexpr std::size_t k_least_short_ways = 3;  ///< that are noise
-constexpr double k_noise_factor = 6.0;         ///< of the median way of noise, which none of thousands exceeds
-constexpr double k_least_turn = 2e-3;          ///< share of the range of x
+constexpr double k_slope_share = 0.05;    ///< fall of the force that gives the slope, over the force at the reversal
+constexpr double k_same_reversal = 0.01;  ///< largest distance of equal reversals, over their x
+constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< end of loading that gets a line, over x of the last reversal
+constexpr double k_round_off = 1e-12;          ///< force that counts as zero, over the force at the reversal
+constexpr double k_same_end = 1e-6;            ///< largest distance beyond the end of a piece that has a value, over x
+constexpr std::size_t k_short_way = 2;         ///< longest path between two turns that may be noise, in rows
+constexpr std::size_t k_least_short_ways = 3;  ///< number of such paths from which on they are noise
+constexpr double k_noise_factor = 6.0;         ///< least turn over the median noise; none of thousands exceeds it
+constexpr double k_least_turn = 2e-3;          ///< least turn over the range of x
 
 [[nodiscard]] XyCurve up_to(const XyCurve& loading, double x) {
   const auto end = std::ranges::upper_bound(loading.x, x);
@@ -34,7 +34,7 @@ constexpr double k_least_turn = 2e-3;          ///< share of the range of x
   return found == excursions.end() ? nullptr : &*found;
 }
 
-/// y of a piece in which x only falls or only rises, by linear interpolation; nan beyond its ends.
+/// y at x by linear interpolation in a piece with monotone x; NaN beyond its ends.
 [[nodiscard]] double value_at(const XyCurve& piece, double x) {
   if (piece.x.empty()) return k_nan;
   const double direction = piece.x.back() < piece.x.front() ? -1.0 : 1.0;
@@ -47,8 +47,8 @@ constexpr double k_least_turn = 2e-3;          ///< share of the range of x
   return std::lerp(piece.y[row - 1], piece.y[row], (x - piece.x[row - 1]) / (piece.x[row] - piece.x[row - 1]));
 }
 
-/// Largest distance of a piece from that of the curve at the rows of the reference after its first; nan where they
-/// have none in common.
+/// Largest |y| distance of two pieces with monotone x, at the rows of the reference after its first one; NaN if they
+/// have no common range.
 [[nodiscard]] double largest_distance(const XyCurve& reference, const XyCurve& curve) {
   double largest = k_nan;
   for (std::size_t k = 1; k < reference.x.size(); ++k) {
@@ -57,7 +57,7 @@ constexpr double k_least_turn = 2e-3;          ///< share of the range of x
   return largest;
 }
 
-/// Largest |y| of the rows up to a place of first loading.
+/// Largest |y| of the rows before x is first exceeded.
 [[nodiscard]] double largest_before(const XyCurve& curve, double x) {
   double largest = 0.0;
   for (std::size_t k = 0; k < curve.x.size() && !(curve.x[k] > x); ++k) {
@@ -74,7 +74,7 @@ void compare_loading(const XyCurve& reference, const XyCurve& curve, BranchCompa
   line.coverage = difference.coverage;
 }
 
-/// How far x has to come back for a turn that is no noise.
+/// Least distance by which x has to come back for a turn that is not noise, in units of x.
 [[nodiscard]] double least_turn(std::span<const double> x) {
   const auto [lowest, highest] = std::ranges::minmax(x);
   std::vector<double> short_ways;
@@ -128,7 +128,7 @@ XyCurve first_loading(const XyCurve& curve) {
 }
 
 std::vector<Excursion> excursions(const XyCurve& curve) {
-  enum class Way { load, back, forth, none };  // none: after a reload that was broken off
+  enum class Way { load, back, forth, none };  // none: x falls again before the reload is complete
   std::vector<Excursion> result;
   double largest = -std::numeric_limits<double>::infinity();
   std::size_t turn = 0;  // the last row at the largest x

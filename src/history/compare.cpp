@@ -14,28 +14,29 @@
 namespace monograin {
 namespace {
 
-/// Share of the range of x within which two jumps, or two ends, are the same one: events are located about as exactly
-/// as the solution that crosses them.
+/// Largest distance of equal jumps, or of equal ends, over the range of x. Events are located about as accurately as
+/// the solution that crosses them.
 constexpr double k_same_event = 1e-6;
-/// Share of the range of x that is rounding: too little to be a turn of the curve.
+/// Largest reversal of x that is round-off, over the range of x.
 constexpr double k_rounding = 1e-12;
 
-/// The reference at one place and what the other curve differs by; nan where they cannot be compared.
+/// Value of the reference at one x and the difference of the other curve; NaN if they cannot be compared there.
 struct Sample {
   double x;
   double reference;
   double difference;
-  bool counts;  ///< at least one of the curves is defined here
+  bool counts;  ///< true if at least one of the curves is defined here
 };
 
-/// One value of x in a monotone piece, with what the curve comes from and goes on to.
+/// One value of x in a monotone piece, with both limits of the curve.
 struct Knot {
-  double along;  ///< x, or -x in a piece in which x decreases: increases strictly from knot to knot
-  double left;
-  double right;
-  bool is_jump;  ///< more than one row at this x
+  double along;  ///< x, or -x if x decreases in the piece: strictly ascending from knot to knot
+  double left;   ///< y as x is reached
+  double right;  ///< y as x is left
+  bool is_jump;  ///< true if several rows have this x
 };
 
+/// A part of a curve with monotone x.
 struct Piece {
   double direction = 1.0;  ///< +1 where x increases, -1 where it decreases
   std::vector<Knot> knots;
@@ -58,8 +59,8 @@ struct Curve {
 
 // --- pieces
 
-/// Row indices at which x turns back, with the first and the last row around them. Of several rows at a turn the last
-/// is taken: it ends one piece and starts the next.
+/// Rows at which x turns back, with the first and the last row. If several rows are at a turn, the last one counts: it
+/// ends one piece and starts the next.
 [[nodiscard]] std::vector<std::size_t> turning_rows(std::span<const double> x, double tolerance) {
   std::vector<std::size_t> turns;
   double direction = 0.0;
@@ -112,7 +113,7 @@ struct Curve {
   return std::lerp(from.right, to.left, (along - from.along) / (to.along - from.along));
 }
 
-/// Reads a piece of the other curve at any place.
+/// Evaluates a piece of the other curve at any x, given as Knot::along.
 class PieceReader {
  public:
   PieceReader(const std::vector<Knot>& knots, double range) : knots_(knots), reach_(k_same_event * range) {}
@@ -125,7 +126,7 @@ class PieceReader {
     return knot != knots_.end() && knot->along == along;
   }
 
-  /// The jump that is taken for one at this place, or nullptr.
+  /// The nearest jump within k_same_event of the range of x, or nullptr.
   [[nodiscard]] const Knot* jump_near(double along) const noexcept {
     const Knot* nearest = nullptr;
     double reach = reach_;
@@ -155,13 +156,13 @@ class PieceReader {
   double reach_;
 };
 
-/// Difference of two values that were both recorded. One that is undefined in one curve only is infinite.
+/// Difference of two recorded values; infinite if only one of them is defined, 0 if both are undefined or equal.
 [[nodiscard]] double recorded_difference(double reference, double other) noexcept {
   if (std::isnan(reference) != std::isnan(other)) return std::numeric_limits<double>::infinity();
   return reference == other ? 0.0 : other - reference;  // equal infinities do not differ
 }
 
-/// Difference to the nearer of the two sides of b, where a has one value only.
+/// The smaller of the differences to the two limits of b, for an x at which a has a single value.
 [[nodiscard]] double nearer_difference(double from_left, double from_right) noexcept {
   return std::abs(from_right) < std::abs(from_left) ? from_right : from_left;
 }
@@ -179,7 +180,7 @@ void sample_piece(const Piece& a, const Piece& b, double range, std::vector<Samp
       samples.push_back({x, knot.left, difference, !std::isnan(knot.left) || !std::isnan(left)});
       continue;
     }
-    // A jump a little earlier or later in b is read on the same side of it as in a.
+    // The jump of b may be a little earlier or later: left limits are read before both jumps, right limits after both.
     const Knot* const jump = reader.jump_near(knot.along);
     const double before = jump ? std::min(knot.along, jump->along) : knot.along;
     const double after = jump ? std::max(knot.along, jump->along) : knot.along;
@@ -238,7 +239,7 @@ void sample_piece(const Piece& a, const Piece& b, double range, std::vector<Samp
 
 [[nodiscard]] double over(double measure, double scale) noexcept { return scale > 0.0 ? measure / scale : measure; }
 
-/// Sums along the path of the reference.
+/// Integrals over |dx| along the path of the reference.
 struct PathIntegrals {
   double length = 0.0;
   double compared_length = 0.0;
@@ -258,7 +259,7 @@ struct PathIntegrals {
     if (std::isnan(from.difference) || std::isnan(to.difference)) continue;
     sums.compared_length += dx;
     sums.difference_squared += 0.5 * dx * (from.difference * from.difference + to.difference * to.difference);
-    // A reference that is undefined has an infinite difference, which says enough.
+    // An undefined reference already has an infinite difference.
     if (std::isnan(from.reference) || std::isnan(to.reference)) continue;
     sums.reference_squared += 0.5 * dx * (from.reference * from.reference + to.reference * to.reference);
     sums.reference += 0.5 * dx * (std::abs(from.reference) + std::abs(to.reference));
@@ -295,14 +296,14 @@ struct PathIntegrals {
 
 // --- tables
 
-/// The heading of a column of the reference that is asked for.
+/// Heading of the column of that name in the reference. @throws std::runtime_error if there is none
 [[nodiscard]] std::string heading_of(const Table& a, const std::string& name) {
   const auto index = a.find(name);
   if (!index) throw std::runtime_error(fmt::format("the first table has no column '{}'", name));
   return a.columns()[*index].heading();
 }
 
-/// step and row number the rows; they are not results.
+/// True for the columns step and row, which number the rows and are not results.
 [[nodiscard]] bool is_counter(const Column& column) { return column.name == "step" || column.name == "row"; }
 
 [[nodiscard]] std::vector<std::string> result_headings(const Table& a, const std::string& x) {
@@ -314,7 +315,7 @@ struct PathIntegrals {
   return headings;
 }
 
-/// Says how b lacks a column of a; empty if it has the column with the same unit and kind.
+/// Describes how a column of a is missing in b; empty if b has it with the same unit and kind.
 [[nodiscard]] std::string missing_column(const Table& a, const Table& b, const std::string& heading) {
   const Column& in_a = a.columns()[*a.find(heading)];
   const auto index = b.find(in_a.name);
@@ -329,7 +330,7 @@ struct PathIntegrals {
   return {};
 }
 
-/// The rows of a column of words: all of them, or those where the word changes.
+/// Rows of a column of words: all rows, or only those at which the word changes.
 [[nodiscard]] std::vector<std::size_t> word_rows(const Table& table, std::size_t column, bool only_changes) {
   std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -339,8 +340,8 @@ struct PathIntegrals {
   return rows;
 }
 
-/// Names the first place where words differ; empty if they do not. Tables that share their x are compared row by row;
-/// of others the order in which words follow each other counts.
+/// Describes the first difference of two columns of words; empty if they agree. Tables with the same x in every row are
+/// compared row by row, others by the order of their words.
 [[nodiscard]] std::string word_difference(const Table& a, const Table& b, const std::string& heading,
                                           const std::string& x) {
   const std::size_t x_a = *a.find(x);

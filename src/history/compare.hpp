@@ -1,4 +1,4 @@
-/// How far two curves are apart.
+/// Comparison of curves and tables: error measures, missing columns, events.
 #pragma once
 
 #include <span>
@@ -10,35 +10,34 @@
 
 namespace monograin {
 
-/// Compares y over x. Curves that share their x values row by row are compared there; otherwise b is interpolated
-/// linearly at the x of a, piece by piece where x turns back (loading, unloading, ...).
+/// Compares curve b with the reference a, as y over x. If both have the same x in every row, rows are compared with
+/// rows. Otherwise b is interpolated linearly at the x of a, piece by piece between reversals of x.
 ///
-/// Rows that share one x are a jump: the first is its left limit, the last its right one, rows between take no part.
-/// A jump of b within 1e-6 of the range of x is taken for the same jump, and left is compared with left, right with
-/// right. Beyond the ends of b (by more than that share) nothing is compared.
+/// Consecutive rows with one x are a jump: the first row is its left limit, the last row its right limit, and rows
+/// between are ignored. A jump of b within 1e-6 of the range of x counts as the jump of a, and limits are compared with
+/// limits of the same side. Rows of a farther than that beyond the ends of b are not compared.
 ///
-/// An undefined value (nan) matches an undefined one. A value that is undefined in one curve only is an infinite
-/// difference where both have a row, and is not covered where b is interpolated.
-/// @throws std::runtime_error when the curves cannot be brought together (no common range, different number of pieces)
-/// @throws std::invalid_argument when a curve has fewer or more y than x
+/// Two undefined values (NaN) agree. A value that is undefined in one curve only is an infinite difference if both
+/// curves have a row there, and lowers the coverage if b is interpolated there.
+/// @throws std::runtime_error if the curves cannot be matched (no common range, different number of pieces)
+/// @throws std::invalid_argument if x and y of a curve differ in length
 [[nodiscard]] CurveDifference compare_curves(std::span<const double> x_a, std::span<const double> y_a,
                                              std::span<const double> x_b, std::span<const double> y_b);
 
-/// Share of the reference below which a curve does not cover it: events at its ends may be a rounding error apart.
+/// Least coverage of a complete curve. It is below 1 because events that end two curves may differ by round-off.
 inline constexpr double k_least_coverage = 0.999;
 
-/// Compares every column of table a (the reference) but x and the counting columns step and row, or the one named.
-/// Words are compared row by row where the tables share their x, otherwise by the order in which they follow each
-/// other.
+/// Compares columns of table b with those of the reference a. Columns of words are compared row by row if the tables
+/// have the same x in every row, otherwise by the order of their words. A column that cannot be compared becomes a gap.
 ///
-/// @param x  name or heading of a column of a; empty: the first column
-/// @param y  name or heading of a column of a; empty: every column
-/// @throws std::runtime_error when a does not have these columns
+/// @param x  name or heading of a column of a, the abscissa; empty: the first column
+/// @param y  name or heading of a column of a; empty: every column except x, step and row
+/// @throws std::runtime_error if a lacks these columns, or x holds words
 [[nodiscard]] Comparison compare_tables(const Table& a, const Table& b, const std::string& x, const std::string& y);
 
-/// Compares the events of two runs: their names and classes in their order, and their times as one curve over their
-/// number, called "event time[s]".
-/// @throws std::runtime_error when a has no columns time, class and event
+/// Compares the events of two runs, b with the reference a: their names and contact classes in order, and their times
+/// as a curve "event time[s]" over the number of the event.
+/// @throws std::runtime_error if a lacks the columns time, class and event
 [[nodiscard]] Comparison compare_events(const Table& a, const Table& b);
 
 }  // namespace monograin

@@ -10,11 +10,12 @@
 namespace monograin {
 namespace {
 
-// Share of the scale from which on a fall is worth a warning; laws make smaller corrections at their transitions.
+// Least fall of the dissipation that gets a warning, over the scale; laws make smaller corrections at their
+// transitions.
 constexpr double k_worth_a_warning = 1e-6;
-// Global error of a controlled integration over its rtol.
+// Bound of the global error of an integration with error control, over its rtol.
 constexpr double k_error_over_rtol = 100.0;
-// Rounding of an overlap over R0: a difference of a few lengths of that order.
+// Bound of the round-off of an overlap over R0: an overlap is a difference of a few lengths of the order of R0.
 constexpr double k_overlap_rounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace

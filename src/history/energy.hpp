@@ -1,4 +1,4 @@
-/// Whether a run gives back energy that was never put in.
+/// Check of the second law: a run must not release energy that was never put in.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace monograin {
 
-/// The largest fall of the dissipation, work less stored energy, between two rows of a history. The second law allows
-/// none.
+/// Largest fall of the dissipation (work minus stored energy) between two rows of a history. The second law forbids any
+/// fall.
 struct DissipationFall {
   double from = 0.0;    ///< time of the largest dissipation before the fall [s]
   double to = 0.0;      ///< time of the least dissipation after it [s]
@@ -21,15 +21,16 @@ struct DissipationFall {
 
 /// Finds the largest fall of the dissipation in a history with columns `work` and `stored_energy`.
 ///
-/// @param radius  initial radius R0 [m], >= 0: contacts are rounded as lengths of the order of R0 are, and the energy
-///                that this makes is no fall
-/// @return empty where the dissipation never falls, or where the history has no such columns
+/// @param radius  initial radius R0 [m], >= 0: overlaps have the round-off of lengths of the order of R0, and a fall
+///                within the energy of that round-off does not count
+/// @return empty if the dissipation never falls, or the history lacks these columns
 [[nodiscard]] std::optional<DissipationFall> largest_dissipation_fall(const Table& history, double radius);
 
-/// The warning for a history whose dissipation falls by more than 1e-6 of its scale: when, and by how much.
+/// Warning with time and amount if the dissipation of a history falls by more than 1e-6 of its scale; empty if not.
 ///
-/// @param model  whose page says where its law may do so
-/// @param rtol   relative tolerance of the integration; 0 where the states were solved for
+/// @param radius  initial radius R0 [m], >= 0
+/// @param model   name of the model, whose page says where its law may create energy
+/// @param rtol    relative tolerance of the integration; 0 with the direct form
 [[nodiscard]] std::optional<std::string> energy_warning(const Table& history, double radius, const std::string& model,
                                                         double rtol);
 

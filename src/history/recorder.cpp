@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t k_leading = 3;  // time, step, row
 
-/// The columns of a system's observables after some leading ones, and those of derivatives after them.
+/// Joins columns in the order of a row: leading columns, observables of the system, derivatives.
 std::vector<Column> with_observables(std::vector<Column> columns, const HybridSystem& system,
                                      const std::vector<Column>& derivatives) {
   for (const Observable& o : system.observables()) {
@@ -17,7 +17,7 @@ std::vector<Column> with_observables(std::vector<Column> columns, const HybridSy
   return columns;
 }
 
-/// Index of a word in a list that grows as new words come.
+/// Index of a word in a list; appends a word that the list lacks.
 double index_of(std::string_view word, std::vector<std::string>& words) {
   auto found = std::ranges::find(words, word);
   if (found == words.end()) found = words.insert(words.end(), std::string(word));
@@ -55,7 +55,7 @@ void Recorder::event(const Event& event) {
 }
 
 Table Recorder::take_events() const {
-  // A column without labels would hold numbers; an empty events table has none of either.
+  // A column without labels holds numbers. Without events there are no words; an empty word keeps it a column of words.
   const auto or_empty_word = [](std::vector<std::string> words) {
     if (words.empty()) words.emplace_back();
     return words;

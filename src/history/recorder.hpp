@@ -1,4 +1,4 @@
-/// Records a run: rows of the history at output points and around events, and a row for every event.
+/// Recorder of a run: rows of the history at output points and around events, and a row for every event.
 #pragma once
 
 #include <string>
@@ -10,9 +10,11 @@
 
 namespace monograin {
 
+/// Records what a drive reports as two tables, history and events.
 class Recorder final : public HistorySink {
  public:
-  /// @param derivatives  columns that follow those of the observables, and that differentiate() fills
+  /// @param system  system whose observables are recorded; must outlive the recorder
+  /// @param derivatives  columns after those of the observables, filled by differentiate()
   explicit Recorder(HybridSystem& system, const std::vector<Column>& derivatives = {});
 
   void reserve_rows(std::size_t count) { history_.reserve_rows(count); }
@@ -27,9 +29,9 @@ class Recorder final : public HistorySink {
 
  private:
   struct Entry {
-    double contact_class = 0.0;
-    double name = 0.0;
-    std::vector<double> state;  ///< the row of the history
+    double contact_class = 0.0;  ///< index into class_words_
+    double name = 0.0;           ///< index into event_words_
+    std::vector<double> state;   ///< row of the history at the event
   };
 
   HybridSystem& system_;

@@ -14,7 +14,7 @@
 namespace monograin {
 namespace {
 
-// Room for the rows around events, so that recording them does not allocate.
+// Rows reserved for events in addition to the output points, so that recording rarely allocates.
 constexpr std::size_t k_event_rows = 64;
 
 class Stopwatch {
@@ -31,7 +31,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Symbols under which material constants stand in the header of a history.
+/// Keys of `[material]` and their symbols in the header of a history.
 constexpr std::pair<std::string_view, std::string_view> k_symbols[] = {
     {"youngs_modulus", "E"},
     {"poisson_ratio", "nu"},

@@ -1,4 +1,4 @@
-/// From a scenario to a recorded run: the one way every command takes.
+/// Running a checked scenario and recording the run; every command runs scenarios by these functions.
 #pragma once
 
 #include <functional>
@@ -14,33 +14,36 @@
 
 namespace monograin {
 
-/// What a drive leaves behind.
+/// Result of a run: status, statistics, and the recorded tables.
 struct RunRecord : DriveResult {
   Table history;
   Table events;
-  bool creates_energy = false;  ///< the dissipation falls, and a warning says so
+  bool creates_energy = false;  ///< true if the dissipation falls; a warning then says when
 };
 
-/// Drives a scene and records it.
+/// Runs the program of a scene and records it.
+/// @param integrator  name of an integrator, not `auto`
 [[nodiscard]] RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
                                    const Output& output);
 
-/// Parts of a history that a study does not read.
+/// Parts of a history that a run need not compute.
 struct LeftOut {
-  bool energies = false;  ///< their columns hold NaN
-  bool rows = false;      ///< those at output points within a step; not where the scenario lists its output times
+  bool energies = false;  ///< true: columns of energies hold NaN
+  bool rows = false;      ///< true: no rows within a step, unless the scenario lists output times
 };
 
-/// Runs a scenario by itself: without the header, the warnings and the timings of run_scenario(), and without
-/// sensitivities.
+/// Makes the scene of a scenario, runs its program and records it, without the header, warnings, timings and
+/// sensitivities of run_scenario().
 [[nodiscard]] RunRecord record_run(const CheckedScenario& scenario, const LeftOut& left_out = {});
 
-/// Carries derivatives along, and records them.
-/// @param columns  of the derivatives, as many as a row of them has
+/// Runs the program of a scene with forward sensitivities, and records both.
+/// @param integrator  name of an integrator that can integrate sensitivities
+/// @param columns  headings of the derivatives, one for each derivative of a row
 [[nodiscard]] RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
                                    const Output& output, ForwardSensitivities& sensitivities,
                                    const std::vector<Column>& columns);
 
+/// A contact class and the names of its walls.
 struct ClassSummary {
   std::string name;
   std::vector<std::string> walls;
@@ -54,19 +57,20 @@ struct Timings {
   double output = 0.0;
 };
 
-/// Gives back a system with something around it, such as a clock.
+/// Wraps a system in another one, such as one that measures times.
 using SystemWrapper = std::function<std::unique_ptr<HybridSystem>(std::unique_ptr<HybridSystem>)>;
 
-/// How the derivatives by a number were found.
+/// Method and accuracy of the derivatives with respect to one key.
 struct Sensitivity {
   std::string key;
-  double value = 0.0;       ///< [SI]
-  double step = 0.0;        ///< to either side [SI]
-  double error = 0.0;       ///< estimate, over the largest derivative of the same column; nan: there are none
-  bool is_forward = false;  ///< integrated with the run; else differences of two more runs
-  std::string why;          ///< this method
+  double value = 0.0;       ///< value of the key [SI]
+  double step = 0.0;        ///< distance of the two neighbouring values from `value` [SI]
+  double error = 0.0;       ///< estimated error over the largest derivative of the column; NaN: no derivatives
+  bool is_forward = false;  ///< true: integrated with the run; false: differences of two more runs
+  std::string why;          ///< reason for the method
 };
 
+/// A run with everything that its files show.
 struct Run {
   CheckedScenario scenario;
   RunRecord record;
@@ -77,8 +81,8 @@ struct Run {
   Timings timings;
 };
 
-/// Runs a checked scenario. Histories and events carry the header lines that make their files self-describing.
-/// @param wrapped  takes the scene's system before it runs, and returns what is to run in its place
+/// Runs a checked scenario. History and events get the header lines that make their files self-describing.
+/// @param wrapped  if given, wraps the system of the scene before the run
 [[nodiscard]] Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped = {});
 
 /// Digest of a text, e.g. "xxh128:3f...".

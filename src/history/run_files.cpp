@@ -16,14 +16,15 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int k_run_format = 1;  ///< of run.json
+constexpr int k_run_format = 1;  ///< format number of run.json; files of a later format are refused
+/// Largest run.json that is read [bytes].
 constexpr std::size_t k_largest_run = std::size_t{256} << 20U;
 
 void write_table(const Table& table, const fs::path& file) { write_text_file(file, csv_text(table)); }
 
 Json versions() { return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}}; }
 
-/// What the files hold that options name, so that the run can be repeated without them.
+/// Content of the files that options name, so that the run can be repeated without these files.
 Json files_of(const CheckedScenario& scenario) {
   Json files = Json::object();
   for (const auto& [option, curve] : scenario.curves) {
@@ -90,7 +91,7 @@ Json to_json(const Run& run) {
 }  // namespace
 
 std::string run_json(const Run& run) {
-  // Nobody checks that the comments in a table are UTF-8.
+  // Comments in a table need not be UTF-8: invalid bytes are replaced.
   return to_json(run).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -1,4 +1,4 @@
-/// The files a run leaves: history.csv, events.csv, run.json, and a figure if asked for.
+/// Files of a run: history.csv, events.csv, run.json, and a figure if requested.
 #pragma once
 
 #include <filesystem>
@@ -10,16 +10,18 @@
 
 namespace monograin {
 
-/// The scenario of a run, from its folder: with the overrides and the tables it had then, wherever those are now.
-/// @throws std::runtime_error where there is no run.json, or none that holds a scenario
+/// Restores the scenario of a run from its folder. Overrides and tables come from run.json, so that the run can be
+/// repeated after their files have changed.
+/// @throws std::runtime_error if run.json is missing, too large, of a later format, or holds no scenario
 [[nodiscard]] CheckedScenario scenario_of_run(const std::filesystem::path& folder);
 
 /// Text of run.json.
 [[nodiscard]] std::string run_json(const Run& run);
 
-/// Writes a run into its folder, whole or not at all.
-/// @param draw  called with the folder before it is published, for figures; may be empty
-/// @throws std::runtime_error naming the file that could not be written
+/// Writes the files of a run into a staged folder and publishes it: either all files are written or none.
+/// @param run   its timings get the time of writing
+/// @param draw  called with the staged folder before it is published, to draw figures; may be empty
+/// @throws std::runtime_error that names the file that could not be written
 void write_run(Run& run, StagedFolder& folder, const std::function<void(const std::filesystem::path&)>& draw = {});
 
 }  // namespace monograin

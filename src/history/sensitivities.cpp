@@ -22,15 +22,16 @@ namespace monograin {
 namespace {
 
 constexpr double k_no_derivative = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_same_instant = 1e-13;  // share of the time of a history
-constexpr double k_direct_noise = 1e-14;  // of states that are solved for
-constexpr double k_finest_rtol = 1e-11;   // of runs that are integrated
+constexpr double k_same_instant = 1e-13;  // largest difference of equal instants, over the duration of the history
+constexpr double k_direct_noise = 1e-14;  // relative round-off of states that `direct` solves for
+constexpr double k_finest_rtol = 1e-11;   // upper bounds of the tolerances of runs for differences
 constexpr double k_finest_atol = 1e-14;
 
-// To either side, over the number: balances bend and rounding of equations that are evaluated at one state.
+// Step of the neighbours over the value of the key. It balances the error of the difference quotient and the round-off
+// of equations that are evaluated at one state.
 constexpr double k_share = 2e-5;
-// What an integrated derivative may be off, over the run's rtol and the largest one of its column. More with ida, whose
-// steps have a larger share of what is tolerated.
+// Error bound of an integrated derivative, over the run's rtol and the largest derivative of the column. The bound for
+// ida is larger, because its steps use a larger share of the tolerance.
 constexpr double k_forward_error = 30.0;
 constexpr double k_forward_error_of_ida = 100.0;
 
@@ -38,7 +39,7 @@ constexpr std::size_t k_time = 0;
 constexpr std::size_t k_step = 1;
 constexpr std::size_t k_side = 2;
 
-/// A history as segments between corners, which are the rows just before and after events and ends of steps.
+/// Segments of a history between its corners: the rows just before and just after events and ends of steps.
 class Segments {
  public:
   explicit Segments(const Table& history) : history_(history) {
@@ -53,11 +54,11 @@ class Segments {
   [[nodiscard]] double time(std::size_t row) const { return history_.at(row, k_time); }
   [[nodiscard]] double side(std::size_t row) const { return history_.at(row, k_side); }
   [[nodiscard]] std::size_t segment(std::size_t row) const { return of_row_[row]; }
-  /// Rows of corners.
+  /// Rows that are corners, in order.
   [[nodiscard]] const std::vector<std::size_t>& corners() const noexcept { return corners_; }
   [[nodiscard]] double duration() const { return history_.row_count() == 0 ? 0.0 : time(history_.row_count() - 1); }
 
-  /// The output row of a segment at an instant.
+  /// Output row of a segment at an instant [s]; none if the segment has no such row.
   [[nodiscard]] std::optional<std::size_t> row_at(double instant, std::size_t segment) const {
     const double slack = k_same_instant * duration();
     std::size_t low = 0;
@@ -78,7 +79,7 @@ class Segments {
   std::vector<std::size_t> corners_;
 };
 
-/// Whether runs come by the same events in the same order, up to an event of the first.
+/// Number of leading events that two runs have in common, in the same order.
 [[nodiscard]] std::size_t same_events(const Table& one, const Table& other) {
   const std::size_t event = *one.find("event");
   const std::size_t of_class = *one.find("class");
@@ -89,7 +90,7 @@ class Segments {
   return row;
 }
 
-/// A run with another number, and its segments.
+/// A run with another value of the key, and its segments.
 struct Variant {
   RunRecord record;
   Segments segments;
@@ -111,7 +112,7 @@ struct Variant {
   return {fmt::format("d({})/d({})", name, key.key), quotient_unit(unit, key.unit), {}};
 }
 
-/// The derivatives by one number.
+/// Derivatives of history and events with respect to one key, as central differences of two runs.
 class Differences {
  public:
   Differences(const Table& history, const Segments& base, const Table& events, const Variant& lower,
@@ -129,11 +130,11 @@ class Differences {
       ++corners_;
     }
     std::vector<std::size_t> corner_of_row(history.row_count(), corners.size());
-    std::size_t begun = 0;  // segments after corners that all runs come by
+    std::size_t begun = 0;  // last segment that begins at a corner of all runs
     for (std::size_t corner = 0; corner < corners.size(); ++corner) {
       const std::size_t row = corners[corner];
       corner_of_row[row] = corner;
-      // An output row on a corner comes just after the row before it.
+      // An output row at the instant of a corner follows the row just before the event.
       const bool is_shared = base.side(row) < 0.0 && row + 1 < history.row_count() && base.side(row + 1) == 0.0 &&
                              base.time(row + 1) == base.time(row);
       if (is_shared) corner_of_row[row + 1] = corner;
@@ -144,20 +145,20 @@ class Differences {
     }
   }
 
-  /// At a row of the history.
+  /// Derivative of a column in a row of the history; NaN if it is undefined.
   [[nodiscard]] double at_row(std::size_t row, std::size_t column) const {
     const auto& [below, above] = partners_[row];
     if (!below || !above) return k_no_derivative;
     return (upper_.record.history.at(*above, column) - lower_.record.history.at(*below, column)) / width_;
   }
 
-  /// At an event, following it. @param column  of the table of events
+  /// Derivative of a column of the events at an event, which is compared with the same event of the other runs.
   [[nodiscard]] double at_event(std::size_t row, std::size_t column) const {
     if (row >= same_events_) return k_no_derivative;
     return (upper_.record.events.at(row, column) - lower_.record.events.at(row, column)) / width_;
   }
 
-  /// How far the differences to either side are apart.
+  /// Absolute difference of the forward and the backward difference quotient in a row; 0 if one of them is undefined.
   [[nodiscard]] double bend(std::size_t row, std::size_t column) const {
     const auto& [below, above] = partners_[row];
     if (!below || !above) return 0.0;
@@ -166,10 +167,11 @@ class Differences {
   }
 
  private:
-  /// The rows of the two runs that go with one of the history: the same corner, or the same instant of the segment.
+  /// Rows of the lower and the upper run that belong to a row of the history: at the same corner, or at the same
+  /// instant in the same segment.
   using Partners = std::pair<std::optional<std::size_t>, std::optional<std::size_t>>;
 
-  /// @param corner  of the row; the number of corners: it is at none
+  /// @param corner  index of the corner at which the row is; the number of corners if it is at none
   [[nodiscard]] Partners partners_of(std::size_t row, std::size_t corner) const {
     if (corner < corners_) return {lower_.segments.corners()[corner], upper_.segments.corners()[corner]};
     if (corner < base_.corners().size()) return {};
@@ -182,12 +184,12 @@ class Differences {
   const Variant& lower_;
   const Variant& upper_;
   double width_;
-  std::size_t same_events_ = 0;
-  std::size_t corners_ = 0;         ///< that all runs come by
-  std::vector<Partners> partners_;  ///< of every row
+  std::size_t same_events_ = 0;     ///< number of leading events that all runs have in common
+  std::size_t corners_ = 0;         ///< number of leading corners that all runs have in common
+  std::vector<Partners> partners_;  ///< one for each row of the history
 };
 
-/// The instants of output rows.
+/// Instants of the output rows [s], ascending, without t = 0.
 [[nodiscard]] std::vector<double> instants_of(const Segments& base, std::size_t rows) {
   std::vector<double> instants;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -197,7 +199,7 @@ class Differences {
   return instants;
 }
 
-/// A table with more columns, which are filled row by row.
+/// A copy of a table to which columns can be added.
 class Widened {
  public:
   explicit Widened(const Table& table) : columns_(table.columns()), header_(table.header) {
@@ -230,7 +232,7 @@ class Widened {
   return largest;
 }
 
-/// The columns that derivatives add to a history and its events, key by key.
+/// Columns of derivatives for a history and its events, key by key.
 [[nodiscard]] std::vector<Column> forward_columns(const CheckedScenario& scenario, const HybridSystem& system) {
   std::vector<Column> columns;
   for (const SensitivityKey& key : scenario.sensitivities) {
@@ -242,9 +244,9 @@ class Widened {
   return columns;
 }
 
-/// A table without the columns of rounding that stand last, as many as those of derivatives. What rounding shows in a
-/// column by more than what counts is undefined.
-/// @param largest  of each column of derivatives, between events
+/// Removes the last columns of a table, which hold the round-off of the derivatives in the columns before them. A
+/// derivative becomes NaN if its round-off exceeds 1e-6 of the largest derivative in its column.
+/// @param largest  largest derivative between events, one for each column of derivatives
 [[nodiscard]] Table without_roundings(const Table& wide, const std::vector<double>& largest) {
   constexpr double k_counts = 1e-6;
   const std::size_t count = largest.size();
@@ -261,7 +263,7 @@ class Widened {
   return table;
 }
 
-/// The largest derivative in each of the columns that stand before those of rounding, between events.
+/// Largest absolute derivative between events, for each of the `count` columns before the `count` columns of round-off.
 [[nodiscard]] std::vector<double> largest_between_events(const Table& wide, std::size_t count) {
   std::vector<double> largest;
   const std::size_t first = wide.columns().size() - 2 * count;
@@ -272,7 +274,8 @@ class Widened {
   return largest;
 }
 
-/// What rounding leaves in derivatives, over the largest one of the same column, in the column that has most of it.
+/// Relative round-off of the derivatives with respect to a key: the worst column counts, each over its largest
+/// derivative.
 [[nodiscard]] double rounding_of(const Table& history, const SensitivityKey& key, double step) {
   double result = 0.0;
   for (std::size_t column = 0; column < history.columns().size(); ++column) {
@@ -289,7 +292,8 @@ class Widened {
   return result;
 }
 
-/// @throws ScenarioError where the scenario does not take a number to either side
+/// Makes the scenes for a slightly smaller and a slightly larger value of each key.
+/// @throws ScenarioError if such a value is not admissible
 [[nodiscard]] std::vector<Neighbours> neighbours_of(const CheckedScenario& scenario) {
   std::vector<Neighbours> neighbours;
   for (const SensitivityKey& key : scenario.sensitivities) {
@@ -302,10 +306,12 @@ class Widened {
   return neighbours;
 }
 
-/// Estimated error of the derivatives in a column, over the largest of them: bend, and rounding of either run.
-/// @param value  the derivative in a row
-/// @param share  the step over the number
-/// @param noise  of what runs compute, over the largest of the column
+/// Estimated error of the differences in a column over the largest derivative: truncation, from the difference of
+/// forward and backward quotients, and noise of the runs.
+/// @param value  gives the derivative in a row
+/// @param share  step over the value of the key
+/// @param step   distance of the values of the two runs from that of the key [SI]
+/// @param noise  relative error of the computed values, over the largest one of the column
 [[nodiscard]] double error_of(const Differences& differences, const Table& history, std::size_t column,
                               const std::function<double(std::size_t row)>& value, double share, double step,
                               double noise) {
@@ -317,13 +323,13 @@ class Widened {
   return (share * bend / 6.0 + rounding) / size;
 }
 
-/// Runs with numbers to either side.
+/// Runs with a smaller and a larger value of the key.
 struct Pair {
   Variant lower;
   Variant upper;
 };
 
-/// None where the scenario does not take these numbers: a warning says so.
+/// Runs the scenario with a smaller and a larger value of the key; null, with a warning, if one is not admissible.
 [[nodiscard]] std::unique_ptr<Pair> runs_beside(const SensitivityKey& key, double step,
                                                 const std::function<RunRecord(double number)>& run_with,
                                                 std::vector<std::string>& warnings) {

@@ -1,4 +1,4 @@
-/// Derivatives of a history with respect to numbers of its scenario.
+/// Sensitivities: derivatives of a history with respect to numbers of its scenario.
 #pragma once
 
 #include <functional>
@@ -11,23 +11,24 @@ namespace monograin {
 
 struct Run;
 
-/// Records a run with derivatives that are integrated with it, in the columns of add_sensitivities(), and says in the
-/// run how near they are.
-/// @param scene      of the run; a new one where the derivatives could not be had
-/// @param new_scene  makes it
-/// @return why they could not be had, and nothing is recorded; none: they are there
+/// Records a run whose derivatives are integrated with it. They get the columns that add_sensitivities() describes, and
+/// the run gets an estimate of their error.
+/// @param scene      scene of the run; replaced with a new one if the derivatives cannot be integrated
+/// @param new_scene  makes a scene for the run
+/// @return empty if run and derivatives are recorded; otherwise why the derivatives cannot be integrated, and nothing
+///         is recorded
 [[nodiscard]] std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene,
                                                                    const std::function<Scene()>& new_scene);
 
 /// Adds a column d(X)/d(KEY) to history and events for every column X of numbers and every key of the scenario's table
-/// [sensitivities], and says in the run how near they are.
+/// [sensitivities], by central differences of two more runs for each key. The run gets an estimate of their error.
 ///
-/// They are derivatives of what a row holds, by central differences of two more runs for each key. An output row stays
-/// at its instant, on its branch. Rows at events and ends of steps, and the events themselves, follow them: there
-/// d(time)/d(KEY) is not zero, and the derivative at fixed time is d(X)/d(KEY) - dX/dt d(time)/d(KEY), with the slope
-/// of the row's own side. Undefined (nan): from where the runs pass different events; an output row that an event
-/// passes from run to run.
-/// @param why  they are not integrated with the run
+/// Output rows are compared at their instant, in the same segment of all runs. Rows at events and ends of steps, and
+/// the events themselves, are compared with the same event or end in the other runs: d(time)/d(KEY) is not zero there,
+/// and the derivative at fixed time is d(X)/d(KEY) - dX/dt d(time)/d(KEY), with the slope on the side of the row.
+/// Derivatives are NaN after the first event that differs between the runs, and in output rows that lie before an event
+/// in one run and after it in another.
+/// @param why  reason for which the derivatives are not integrated with the run
 void add_sensitivities(Run& run, const std::string& why);
 
 }  // namespace monograin

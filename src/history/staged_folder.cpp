@@ -29,11 +29,13 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view k_list = ".monograin";
 constexpr std::string_view k_list_head =
     "# Files that monograin has written here, with their digests. A later result replaces or removes them.\n";
-/// In a hidden folder whose files are being moved.
+/// Empty file that marks a hidden folder whose files are being moved to the target.
 constexpr std::string_view k_moving = ".moving";
 constexpr std::string_view k_staged_infix = ".monograin-staged-";
-constexpr std::size_t k_random_length = 6;  ///< of mkdtemp
+constexpr std::size_t k_random_length = 6;  ///< characters that mkdtemp replaces
+/// Characters of the target's name in that of the hidden folder; file systems allow 255 in all.
 constexpr std::size_t k_longest_name = 200;
+// Largest files that are read: for a digest or a list, and as a marker [bytes].
 constexpr std::size_t k_largest_file = std::size_t{4} << 30U;
 constexpr std::size_t k_largest_marker = std::size_t{256} << 20U;
 
@@ -45,7 +47,7 @@ constexpr std::size_t k_largest_marker = std::size_t{256} << 20U;
   refuse(path, fmt::format("{}: {}", what, std::generic_category().message(error)));
 }
 
-/// Where a path leads, links followed; one that leads nowhere as far as it does.
+/// Follows links and returns the path that they lead to, also if nothing exists there.
 fs::path resolved(fs::path path) {
   if (!path.has_filename()) path = path.parent_path();
   constexpr int k_most_links = 40;
@@ -57,7 +59,7 @@ fs::path resolved(fs::path path) {
   return result.has_filename() ? result : result.parent_path();
 }
 
-/// A folder that is open and locked, if nobody else has it locked.
+/// Opens and locks a folder; is_held() is false if that is impossible. `operation` is that of flock.
 class LockedFolder {
  public:
   LockedFolder(const fs::path& folder, int operation)
@@ -79,7 +81,7 @@ class LockedFolder {
   bool is_held_ = false;
 };
 
-/// Keeps signals that end a process waiting.
+/// Blocks the signals that end a process, as long as the object lives.
 class SignalsHeld {
  public:
   SignalsHeld() {
@@ -109,7 +111,7 @@ using FileList = std::map<std::string, std::string>;  ///< digests by name
   return fs::symlink_status(file, ignored).type() == fs::file_type::regular;
 }
 
-/// The list in a folder; what is no name of a file in it is left out.
+/// Reads the list of written files in a folder. Lines whose name is not that of a file directly in it are ignored.
 [[nodiscard]] FileList read_list(const fs::path& folder) {
   FileList list;
   if (!is_regular(folder / k_list)) return list;
@@ -139,14 +141,14 @@ void write_list(const fs::path& folder) {
 
 // --- whose folder it is
 
-/// Whether a marker is one that this program has written: it says so, or the list in its folder does.
+/// True if this program has written the marker: its content or the list in its folder shows it.
 [[nodiscard]] bool is_own_marker(const fs::path& folder, const std::string& marker) {
   if (read_list(folder).contains(marker)) return true;
   const Json json = Json::parse(read_text_file(folder / marker, k_largest_marker).text, nullptr, false);
   if (!json.is_object()) return false;
   const auto program = json.find("program");
   if (program != json.end()) return *program == "monograin";
-  const auto versions = json.find("versions");  // before there was a program in it
+  const auto versions = json.find("versions");  // early versions wrote no "program"
   return versions != json.end() && versions->is_object() && versions->contains("monograin");
 }
 
@@ -175,7 +177,7 @@ void check_target(const fs::path& target, const std::string& marker) {
 
 // --- putting a result in its place
 
-/// Names of what a result holds, the marker after all others, without the list.
+/// Names of the files of a result, the marker last, without the list.
 [[nodiscard]] std::vector<std::string> names_in(const fs::path& staged, const std::string& marker) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(staged)) {
@@ -186,7 +188,7 @@ void check_target(const fs::path& target, const std::string& marker) {
   return names;
 }
 
-/// Names of the files of an earlier result that have no place beside the new one.
+/// Names of unchanged files of an earlier result in the target that the new result lacks. `list`: files of the new one.
 [[nodiscard]] std::vector<std::string> stale_names(const FileList& list, const fs::path& target) {
   std::vector<std::string> names;
   for (const auto& [name, digest] : read_list(target)) {
@@ -195,8 +197,8 @@ void check_target(const fs::path& target, const std::string& marker) {
   return names;
 }
 
-/// Moves the files of a complete result from its hidden folder into the target, one by one. A process that is killed
-/// meanwhile leaves what another one goes on with: the list goes last.
+/// Moves the files of a complete result from its hidden folder into the target, one by one. The list moves last: if
+/// this process is killed, the next one finds the list in the hidden folder and completes the move.
 void move_files(const fs::path& staged, const fs::path& target, const std::string& marker) {
   const SignalsHeld held;
   for (const std::string& name : stale_names(read_list(staged), target)) fs::remove(target / name);
@@ -208,10 +210,10 @@ void move_files(const fs::path& staged, const fs::path& target, const std::strin
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-/// Exchanges the hidden folder and the target in one step, after all that stays in the target has got a second name in
-/// the hidden folder. That cannot be done with folders, nor with a target that somebody else owns; and who works in the
-/// target, as this process may, would be left in the old one.
-/// @return whether that was done; if not, nothing has changed
+/// Exchanges the hidden folder and the target in one step, after all files that stay have got a hard link in the hidden
+/// folder. Folders cannot be linked, a target with another owner would change its owner, and a process whose working
+/// directory is the target would stay in the old folder: nothing is exchanged then.
+/// @return true if the folders were exchanged; if false, nothing has changed
 [[nodiscard]] bool exchange(const fs::path& staged, const fs::path& target) {
   struct stat is = {};
   if (stat(target.c_str(), &is) != 0 || is.st_uid != geteuid()) return false;
@@ -237,7 +239,7 @@ void move_files(const fs::path& staged, const fs::path& target, const std::strin
   return false;
 }
 
-/// Moves what no list names, such as what came while folders were exchanged, from an old folder into the target.
+/// Moves files that the list of an old folder lacks into the target, such as files made during the exchange.
 void rescue(const fs::path& old, const fs::path& target) {
   const FileList list = read_list(old);
   std::error_code ignored;
@@ -248,7 +250,7 @@ void rescue(const fs::path& old, const fs::path& target) {
   }
 }
 
-/// Deals with hidden folders of a target that nobody works in any more.
+/// Completes or removes hidden folders of a target that killed processes have left; skips locked ones.
 void clear_leftovers(const fs::path& folder, std::string_view prefix, const fs::path& target,
                      const std::string& marker) {
   std::vector<fs::path> leftovers;
@@ -259,7 +261,7 @@ void clear_leftovers(const fs::path& folder, std::string_view prefix, const fs::
   for (const fs::path& leftover : leftovers) {
     const LockedFolder lock(leftover, LOCK_EX | LOCK_NB);
     if (!lock.is_held()) continue;
-    // Without its list the hidden folder is a part of a result, or one whose last file has been moved.
+    // A hidden folder without list holds an incomplete result, or all its files have been moved.
     if (fs::exists(target) && fs::exists(leftover / k_list, ignored)) {
       if (fs::exists(leftover / k_moving, ignored)) {
         move_files(leftover, target, marker);
@@ -295,11 +297,11 @@ StagedFolder::StagedFolder(const fs::path& target, std::string_view marker)
 }
 
 StagedFolder::~StagedFolder() {
-  std::error_code ignored;  // what cannot be removed stays hidden
+  std::error_code ignored;  // files that cannot be removed stay hidden
   fs::remove_all(staged_, ignored);
   if (lock_ >= 0) close(lock_);
   for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) {
-    fs::remove(*parent, ignored);  // those that stayed empty
+    fs::remove(*parent, ignored);  // fails unless the folder is empty
   }
 }
 
@@ -313,7 +315,8 @@ void StagedFolder::make_parents() {
 }
 
 void StagedFolder::make_staged() {
-  // Beside the target, where folders can be exchanged; within it, where nothing can be moved from beside it.
+  // The hidden folder lies beside the target, so that folders can be exchanged; or inside it, if the parent folder is
+  // on another file system or cannot be written.
   struct stat target = {};
   struct stat parent = {};
   const bool exists = stat(target_.c_str(), &target) == 0;
@@ -323,7 +326,7 @@ void StagedFolder::make_staged() {
   const std::string prefix =
       (is_apart ? target_ / k_staged_infix : target_.parent_path() / prefix_beside(target_)).string();
   if (exists && access(target_.c_str(), W_OK | X_OK) != 0) refuse(target_, "cannot be written", errno);
-  do {  // until nobody has taken it for a leftover
+  do {  // repeats if another process removed the folder as a leftover before it was locked
     std::string pattern = prefix + std::string(k_random_length, 'X');
     if (mkdtemp(pattern.data()) == nullptr) refuse(target_, "cannot be written", errno);
     staged_ = pattern;
@@ -346,7 +349,7 @@ void StagedFolder::publish() {
   write_list(staged_);
   sync_to_disk(staged_ / k_list);
   sync_to_disk(staged_);
-  // An empty folder is not renamed over: whoever works in it would be left in one that is gone.
+  // An existing target is never renamed over, even if empty: a process that works in it would lose its folder.
   if (fs::exists(target_) || rename(staged_.c_str(), target_.c_str()) != 0) {
     const LockedFolder one_at_a_time(target_, LOCK_EX);
     if (exchange(staged_, target_)) {

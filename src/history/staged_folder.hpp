@@ -1,4 +1,4 @@
-/// Folders of results, in which a program replaces its own files and leaves those of the user alone.
+/// Folders of results: the program replaces its own files and keeps those of the user.
 #pragma once
 
 #include <filesystem>
@@ -8,35 +8,36 @@
 
 namespace monograin {
 
-/// The file that tells the folder of a run.
+/// File that marks the folder of a run.
 inline constexpr std::string_view k_run_marker = "run.json";
 
-/// A result that is written out of sight and then takes its place.
+/// A result that is written to a hidden folder and then published to its target folder.
 ///
-/// Files go to path(), a hidden folder. In the target every written file replaces the one of its name; all other files
-/// stay. Of an earlier result only those files are removed that this one does not have and that nobody has changed
-/// since, which the hidden list `.monograin` in the folder tells. Whatever happens before publish(), the target stays
-/// as it is.
+/// Files are written to path(), the hidden folder. publish() replaces files of the same name in the target and keeps
+/// all others, except files of an earlier result that the new result lacks and that nobody has changed; the hidden list
+/// `.monograin` in the target has their names and digests. Until publish(), the target does not change.
 ///
-/// publish() changes all files in one step, by an exchange of folders. Where the target has folders in it, belongs to
-/// somebody else, is a file system of its own or has this process in it, the files are moved one by one, the marker
-/// last. What a killed process has left is dealt with by the next one for the same target: such moves are completed,
-/// all else is removed. A link is followed, and stays.
+/// publish() changes all files in one step, by an exchange of folders. If the target contains folders, has another
+/// owner, is a file system of its own or contains the working directory, publish() moves the files one by one, the
+/// marker last. The next process for the same target clears up after a killed one: it completes moves that had begun,
+/// and removes other hidden folders. If the target is a link, the link stays and its destination is the target.
 class StagedFolder {
  public:
-  /// Makes the hidden folder, so that a target that cannot be written is reported before anything is computed.
-  /// @param marker  a file that every result of the kind has
-  /// @throws std::runtime_error if the target is a file, cannot be written, or holds files but no result of this
-  /// program of that kind
+  /// Makes the hidden folder. A target that cannot be written is thus reported before anything is computed.
+  /// @param marker  name of a file that every result of the kind has
+  /// @throws std::runtime_error if the target is a file, cannot be written, or holds files but no result of that kind
+  /// by this program
   explicit StagedFolder(const std::filesystem::path& target, std::string_view marker = k_run_marker);
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
 
+  /// Hidden folder to which the files are written.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return staged_; }
 
-  /// Puts the files in their place, once they are on the disk.
-  /// @throws std::runtime_error if that cannot be done; the target is as it was then
+  /// Flushes the files to the disk and puts them into the target.
+  /// @throws std::runtime_error if a file cannot be put there, for example because a folder has its name. The target is
+  /// then unchanged, unless publish() was moving files one by one.
   void publish();
 
  private:
@@ -45,13 +46,13 @@ class StagedFolder {
 
   std::filesystem::path target_;
   std::string marker_;
-  std::vector<std::filesystem::path> made_parents_;  ///< the outermost first
+  std::vector<std::filesystem::path> made_parents_;  ///< folders made for the target, the outermost first
   std::filesystem::path staged_;
-  int lock_ = -1;  ///< of the hidden folder, held as long as somebody works in it
+  int lock_ = -1;  ///< descriptor that locks the hidden folder until it is published or removed
 };
 
-/// Makes a folder for results whose files are written one by one.
-/// @throws std::runtime_error if that cannot be done, or nothing can be written there
+/// Makes a folder, if it does not exist, for results whose files are written one by one.
+/// @throws std::runtime_error if the folder cannot be made or written
 void prepare_folder(const std::filesystem::path& folder);
 
 }  // namespace monograin

@@ -19,9 +19,10 @@
 namespace monograin {
 namespace {
 
-/// Longest text of one number: sign, 17 digits, point, exponent such as e-308.
+/// Buffer for the text of one number: sign, 17 digits, point and exponent such as e-308 fit [bytes].
 constexpr std::size_t k_longest_number = 32;
-// Bounds of tables that are read: the largest file holds some two million rows of a history of a die.
+// Bounds of files that are read: bytes of a file, bytes of a line, cells. The largest file holds about two million rows
+// of the history of a die.
 constexpr std::size_t k_largest_csv = std::size_t{1} << 30U;
 constexpr std::size_t k_longest_line = std::size_t{1} << 20U;
 constexpr std::size_t k_most_cells = 100'000'000;
@@ -29,7 +30,7 @@ constexpr std::size_t k_most_cells = 100'000'000;
 // --- writing
 
 [[nodiscard]] bool prints_as_integer(double value) noexcept {
-  constexpr double k_largest = 1e15;  // below this, 17 digits would print the same without an exponent
+  constexpr double k_largest = 1e15;  // below, 17 significant digits give the same text without an exponent
   return std::abs(value) < k_largest && value == std::trunc(value) && !(value == 0.0 && std::signbit(value));
 }
 
@@ -37,7 +38,7 @@ constexpr std::size_t k_most_cells = 100'000'000;
 
 void append_csv_number(std::string& text, double value, int digits) {
   if (std::isnan(value)) {
-    text += "nan";  // to_chars may print the sign of a NaN, which says nothing
+    text += "nan";  // to_chars may print the sign of a NaN, which has no meaning
     return;
   }
   std::array<char, k_longest_number> cell;
@@ -50,7 +51,8 @@ void append_csv_number(std::string& text, double value, int digits) {
 
 namespace {
 
-/// Words and headings are written without quotes, so they must not contain what separates cells and rows.
+/// Words and headings are written without quotes, so that they must not contain separators of cells and rows.
+/// @throws std::invalid_argument if a cell contains a comma, a quote or a line break
 void require_plain(std::string_view cell) {
   if (cell.find_first_of(",\"\r\n") != std::string_view::npos) {
     throw std::invalid_argument(
@@ -99,14 +101,14 @@ void append_row(std::string& text, const Table& table, std::size_t row, int digi
   return text.substr(first, text.find_last_not_of(k_blank) - first + 1);
 }
 
-/// What strtod would give for a number beyond the range of double: zero or infinity.
+/// Value of a number beyond the range of double, as strtod gives it: zero or infinity with its sign.
 [[nodiscard]] double out_of_range_value(std::string_view cell) noexcept {
   const bool is_tiny = cell.find("e-") != std::string_view::npos || cell.find("E-") != std::string_view::npos;
   const double magnitude = is_tiny ? 0.0 : std::numeric_limits<double>::infinity();
   return cell.starts_with('-') ? -magnitude : magnitude;
 }
 
-/// The number a cell holds, if all of it is one. Independent of the locale.
+/// Number in a cell; none if any part of the cell is not a number. Independent of the locale.
 [[nodiscard]] std::optional<double> parsed_number(std::string_view cell) noexcept {
   if (cell.starts_with('+')) cell.remove_prefix(1);
   double value = 0.0;
@@ -134,7 +136,7 @@ void append_row(std::string& text, const Table& table, std::size_t row, int digi
   return {std::string(line.substr(0, colon)), std::string(trimmed(line.substr(colon + 1)))};
 }
 
-/// The rows of a file as text, before it is known which columns hold numbers.
+/// Parser of a CSV text. It keeps cells as text until all rows are read: only then columns of numbers are known.
 class CsvText {
  public:
   CsvText(std::string name, std::string_view text) : name_(std::move(name)) {
@@ -246,7 +248,7 @@ class CsvText {
   std::vector<std::string_view> cells_;  ///< row by row, pointing into the text
 };
 
-/// Whether a column bears that name, alone or with its unit. Compared in place, so that looking up cannot throw.
+/// True if a column has that name, alone or with its unit. Comparing in place avoids strings, so that nothing throws.
 [[nodiscard]] bool is_called(const Column& column, std::string_view name) noexcept {
   if (!name.starts_with(column.name)) return false;
   name.remove_prefix(column.name.size());
@@ -316,7 +318,7 @@ std::string csv_number(double value) {
 namespace {
 
 void write_csv(const Table& table, std::ostream& out, int digits) {
-  constexpr std::size_t k_chunk = std::size_t{1} << 20U;  // of text that is kept before it is written
+  constexpr std::size_t k_chunk = std::size_t{1} << 20U;  // bytes of text that are collected before a write
   std::string text;
   const auto write = [&] {
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
