@@ -1,4 +1,4 @@
-/// From what users have to what the rooms work with.
+/// Conversion of a user's Scenario to the CheckedScenario of the rooms.
 #pragma once
 
 #include "monograin/scenario.hpp"
@@ -6,7 +6,8 @@
 
 namespace monograin {
 
-/// @throws ScenarioError with all faults
+/// Parses and checks a scenario, except walls and their programs, which make_scene() checks.
+/// @throws ScenarioError with all faults that it finds
 [[nodiscard]] CheckedScenario checked(const Scenario& scenario);
 
 }  // namespace monograin

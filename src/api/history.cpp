@@ -15,7 +15,7 @@
 namespace monograin {
 namespace {
 
-/// @throws std::invalid_argument where the columns differ in length
+/// Makes a table of columns. @throws std::invalid_argument if the columns differ in length
 Table table_of(const std::vector<History::Column>& columns) {
   std::vector<Column> headings;
   for (const History::Column& column : columns) {
@@ -37,7 +37,7 @@ Table table_of(const std::vector<History::Column>& columns) {
 
 }  // namespace
 
-/// The rows, and those columns that somebody has asked for.
+/// The recorded table, and contiguous copies of its columns, each made at its first use.
 struct History::Content {
   explicit Content(std::shared_ptr<const Table> rows) : table(std::move(rows)), columns(table->columns().size()) {}
 

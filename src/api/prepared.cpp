@@ -19,8 +19,8 @@ namespace {
 
 constexpr double k_undefined = std::numeric_limits<double>::quiet_NaN();
 
-/// One value of a run; NaN where the history has no rows or the value is undefined.
-/// @throws std::invalid_argument where the formula has a value for each row, or an unknown name
+/// Value of a formula over a history; NaN if the history has no rows, or the value is undefined.
+/// @throws std::invalid_argument if the formula has a value for each row, or contains an unknown name
 double value_of(const Expression& formula, std::string_view text, const Table& history) {
   if (history.row_count() == 0) return k_undefined;
   try {
@@ -37,7 +37,7 @@ double value_of(const Expression& formula, std::string_view text, const Table& h
       fmt::format("'{}' has a value for each row; expected one for a run, for example max({})", text, text));
 }
 
-/// Parts of a history that the values of these formulas do not depend on.
+/// Parts of a history that the formulas do not need, and that a run may leave out.
 LeftOut not_needed_by(std::span<const Expression> formulas) {
   const auto names_energy = [](const Expression& formula) {
     return std::ranges::any_of(formula.names(),
@@ -53,9 +53,11 @@ struct PreparedScenario::Content {
   std::vector<std::string> keys;
   ScenarioTemplate scenario;
 
+  /// The scenario with these values of the keys [SI]. @throws ScenarioError if a value is not admissible
   [[nodiscard]] CheckedScenario with(std::span<const double> values) const { return scenario.with({}, keys, values); }
 
-  /// A run for some of its numbers. Columns of derivatives need the whole run.
+  /// Runs the scenario with these values and leaves out parts of the history. A scenario with sensitivities is run
+  /// whole, because only a whole run has the columns of derivatives.
   [[nodiscard]] RunRecord record(std::span<const double> values, const LeftOut& left_out) const {
     const CheckedScenario changed = with(values);
     return changed.sensitivities.empty() ? record_run(changed, left_out) : run_scenario(changed).record;

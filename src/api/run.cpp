@@ -7,6 +7,7 @@
 namespace monograin {
 namespace {
 
+/// A history over a table of the run; it keeps the run alive.
 History part_of(const std::shared_ptr<const Run>& run, const Table& table) {
   return History(std::shared_ptr<const Table>(run, &table));
 }
@@ -27,7 +28,7 @@ std::string RunResult::json() const { return run_json(*run_); }
 
 void RunResult::save(const std::filesystem::path& folder) const {
   StagedFolder staged(folder);
-  Run run = *run_;  // it notes how long the writing takes
+  Run run = *run_;  // a copy, because write_run() notes the time of writing in the run
   write_run(run, staged);
 }
 

@@ -29,7 +29,8 @@ Scenario& Scenario::set_value(std::string_view key, std::string_view value) {
   return *this;
 }
 
-// The shortest text that reads back as the same number; one without a fraction is an integer, which all numbers take.
+// fmt prints the shortest text that reads back as the same number. Without a fraction that is an integer in TOML, which
+// every key of a number accepts.
 Scenario& Scenario::set(std::string_view key, double value) { return set_value(key, fmt::format("{}", value)); }
 Scenario& Scenario::set(std::string_view key, int value) { return set_value(key, fmt::format("{}", value)); }
 Scenario& Scenario::set(std::string_view key, bool value) { return set_value(key, value ? "true" : "false"); }
@@ -49,7 +50,7 @@ Scenario& Scenario::set(std::string_view key, std::span<const std::string> texts
 
 std::vector<Fault> Scenario::validate() const {
   try {
-    // Walls and their programs are checked where the scene is made.
+    // make_scene() checks walls and their programs.
     static_cast<void>(make_scene(checked(*this)));
     return {};
   } catch (const ScenarioError& error) {
