@@ -7,7 +7,7 @@
 namespace monograin {
 namespace {
 
-// Longer ones first, so that `<=` is not read as `<`.
+// Longer relations come first, so that `<=` is not read as `<`.
 constexpr std::array<std::string_view, 4> k_relations{"<=", ">=", "<", ">"};
 
 [[nodiscard]] bool is_met(double left, std::string_view relation, double right) {
@@ -16,7 +16,8 @@ constexpr std::array<std::string_view, 4> k_relations{"<=", ">=", "<", ">"};
   return relation == "<" ? left < right : left > right;
 }
 
-/// Calls `action`; what it finds wrong is located in the constraint.
+/// Calls `action` for a formula that begins at `offset` of a constraint, and shifts the position of an ExpressionError
+/// from the formula to the constraint.
 template <class Action>
 auto shifted(std::size_t offset, Action action) {
   try {

@@ -1,4 +1,4 @@
-/// Inequalities between named quantities, such as `100 <= E / Y <= 5000`.
+/// Inequalities between formulas of named quantities, such as `100 <= E / Y <= 5000`.
 #pragma once
 
 #include <functional>
@@ -10,27 +10,28 @@
 
 namespace monograin {
 
-/// Formulas with `<`, `<=`, `>` or `>=` between them; all of the inequalities have to hold.
+/// A chain of formulas with `<`, `<=`, `>` or `>=` between neighbours. The constraint holds if all inequalities hold.
 class Constraint {
  public:
-  /// A quantity's value, or nothing for a name that is not known.
+  /// Gives the value of a named quantity, or nothing for an unknown name.
   using Lookup = std::function<std::optional<double>(std::string_view name)>;
 
-  /// @throws ExpressionError saying what is wrong, and where in the text
+  /// Parses a constraint.
+  /// @throws ExpressionError with the fault and its position in the text
   explicit Constraint(std::string_view text);
 
-  /// False too where a formula has no value (nan).
-  /// @throws ExpressionError naming an unknown name
+  /// True if all inequalities hold. An inequality with an undefined side (NaN) does not hold.
+  /// @throws ExpressionError for an unknown name
   [[nodiscard]] bool holds(const Lookup& lookup) const;
 
  private:
   struct Side {
     Expression formula;
-    std::size_t offset = 0;  ///< of the formula in the text
+    std::size_t offset = 0;  ///< position of the formula in the text, counted from 0
   };
 
   std::vector<Side> sides_;
-  std::vector<std::string_view> relations_;  ///< between a side and the next
+  std::vector<std::string_view> relations_;  ///< relation k stands between sides k and k + 1
 };
 
 }  // namespace monograin

@@ -35,19 +35,19 @@ constexpr ValueFunction k_value_functions[] = {
     {"tanh", [](double x) { return std::tanh(x); }}};
 
 constexpr std::array<std::string_view, 4> k_row_functions{"min", "max", "end", "last"};
-constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets nest
+constexpr std::size_t k_longest = 400;  ///< characters of a formula; also bounds the depth of the recursive parser
 
 [[nodiscard]] bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 [[nodiscard]] bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The law of that name, or null.
+/// Law of that name among formula_functions(), or null.
 [[nodiscard]] const FormulaFunction* find_law(std::string_view name) {
   const auto laws = formula_functions();
   const auto found = std::ranges::find(laws, name, &FormulaFunction::name);
   return found == laws.end() ? nullptr : &*found;
 }
 
-/// How many arguments a function takes; 0: there is no such function.
+/// Number of arguments of a function; 0 if there is no function of that name.
 [[nodiscard]] std::size_t argument_count(std::string_view name) {
   if (const FormulaFunction* law = find_law(name)) return law->argument_count;
   const bool is_known =
@@ -56,7 +56,8 @@ constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets
   return is_known ? 1 : 0;
 }
 
-/// Rows without a value do not count: before a contact is made its pressure is undefined.
+/// Reduces a column to one value by min, max, last or end. All but end skip undefined rows, such as the pressure before
+/// first touch; the result is NaN if no row is defined.
 [[nodiscard]] double reduced(std::string_view function, const Values& values) {
   if (function == "end") return values.empty() ? std::numeric_limits<double>::quiet_NaN() : values.back();
   double result = std::numeric_limits<double>::quiet_NaN();
@@ -78,7 +79,7 @@ constexpr std::size_t k_longest = 400;  ///< which also bounds how deep brackets
 
 }  // namespace
 
-/// Reads a formula by recursive descent.
+/// Parses a formula by recursive descent into the instructions of a stack machine.
 class ExpressionParser {
  public:
   explicit ExpressionParser(std::string_view text) : text_(text) {}

@@ -1,4 +1,4 @@
-/// Formulas over the columns of a table: what a figure has on its axes.
+/// Formulas over the columns of a table, as on the axes of a figure.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace monograin {
 
-/// A text that is no formula, or a formula that has no value where it is asked for one.
+/// Fault of a formula: its text cannot be parsed, or it cannot be evaluated.
 class ExpressionError : public std::runtime_error {
  public:
   ExpressionError(std::size_t offset, const std::string& message, std::string unknown_name = {})
       : std::runtime_error(message), offset_(offset), unknown_name_(std::move(unknown_name)) {}
-  /// Place in the formula's text, counted from 0.
+  /// Position of the fault in the text of the formula, counted from 0.
   [[nodiscard]] std::size_t offset() const noexcept { return offset_; }
-  /// The name that is not known, where that is what is wrong.
+  /// The unknown name, if the fault is one; otherwise empty.
   [[nodiscard]] const std::string& unknown_name() const noexcept { return unknown_name_; }
 
  private:
@@ -27,40 +27,43 @@ class ExpressionError : public std::runtime_error {
   std::string unknown_name_;
 };
 
-/// A formula of numbers, names, `+ - * / ^`, brackets and the functions sqrt, exp, log, abs, sin, cos, tan, atan, sinh,
-/// cosh, tanh (value by value), min, max, last (one value of all that are defined), end (that of the last row, defined
-/// or not), and laws that are no formula: radius_influence_closed, _integral, _projected of Poisson's ratio, angle,
-/// contact radius over R. A name is letters, digits, `_` and `.` (axial.force), or any text between backquotes.
+/// A parsed formula of numbers, names, `+ - * / ^`, brackets and functions.
 ///
-/// `a / b * c` is (a / b) * c; `^` binds first and from the right.
+/// Functions of each value: sqrt, exp, log, abs, sin, cos, tan, atan, sinh, cosh, tanh. Functions of a column: min,
+/// max, last (of its defined values), end (value in the last row, even if undefined). Laws: radius_influence_closed,
+/// radius_influence_integral, radius_influence_projected, with the arguments Poisson's ratio, angle, contact radius/R.
+/// A name consists of letters, digits, `_` and `.` (axial.force), or is any text between backquotes.
+///
+/// `a / b * c` is (a / b) * c; `^` binds before them, and from the right.
 class Expression {
  public:
-  /// One value, or one for each row; nothing for a name that is not known.
+  /// Gives the value of a name, or its values in all rows; nothing for an unknown name.
   using Lookup = std::function<std::optional<std::vector<double>>(std::string_view name)>;
 
-  /// @throws ExpressionError saying what is wrong, and where
+  /// Parses a formula of at most 400 characters.
+  /// @throws ExpressionError with the fault and its position
   explicit Expression(std::string_view text);
 
-  /// All values: as many as the columns in it have rows; one if there is no column in it, or only below min, max,
-  /// last, end.
-  /// @throws ExpressionError naming an unknown name, or where the lengths of columns differ
+  /// Values of the formula: one for each row of the columns in it, or a single value if columns stand only inside min,
+  /// max, last and end.
+  /// @throws ExpressionError for an unknown name, or if columns differ in length
   [[nodiscard]] std::vector<double> evaluate(const Lookup& lookup) const;
 
-  /// Every name in it, as often as it stands there.
+  /// Names in the formula, in order, repeated as often as they occur.
   [[nodiscard]] std::vector<std::string_view> names() const;
-  /// True if all names stand alone in end(): earlier rows make no difference.
+  /// True if every name stands alone inside end(), so that the value depends on the last row only.
   [[nodiscard]] bool needs_last_row_only() const noexcept;
 
  private:
   friend class ExpressionParser;
 
   enum class Operation { number, name, add, subtract, multiply, divide, power, negate, function };
-  /// Operands come before their operation, as on a stack machine.
+  /// Instruction of a stack machine: operands come before their operation.
   struct Instruction {
     Operation operation = Operation::number;
     double number = 0.0;
     std::string name{};
-    std::size_t offset = 0;
+    std::size_t offset = 0;  ///< position in the text of the formula
   };
 
   std::vector<Instruction> program_;
