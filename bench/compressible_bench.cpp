@@ -1,6 +1,6 @@
 // Cost of one evaluation of the contact law of a compressible particle, and of the parts of its material point. The
-// label of each is the cost floor: what a prototype with everything of the material worked out beforehand took on one
-// core (g++ -O3, best of several runs).
+// label of each benchmark is its cost floor: the time of a prototype with precomputed material constants on one core
+// (g++ -O3, best of several runs).
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -16,14 +16,14 @@ namespace {
 
 // --- contact
 
-/// The source's base case.
+/// Contact laws of the source's base case.
 struct Granule {
   LoadingLaw law = make_loading_law(3.9, 0.1, 3.0);
   double hertz = hertz_stiffness(100.0, 0.3);
   UnloadingCurve curve = unloading_from(law, hertz, UnloadingRule(), 0.4);
 };
 
-/// Force and slope.
+/// Times force and slope on the loading branch.
 void loading(benchmark::State& state, const char* floor) {
   const Granule granule;
   time_law(state, floor, granule.law.transition, k_largest_displacement, [&](double d) {
@@ -31,7 +31,7 @@ void loading(benchmark::State& state, const char* floor) {
   });
 }
 
-/// Force and slope.
+/// Times force and slope on the unloading branch.
 void unloading(benchmark::State& state, const char* floor) {
   const Granule granule;
   time_law(state, floor, granule.curve.separation(), granule.curve.largest, [&](double d) {
@@ -76,7 +76,7 @@ void properties(benchmark::State& state, const char* floor) {
   time_law(state, floor, 0.0, 0.2, [&](double phi) { return properties_at(parameters, phi); });
 }
 
-/// Yield function and potential with their derivatives, at given properties.
+/// Times yield function and plastic potential with their derivatives, at fixed properties.
 void yield(benchmark::State& state, YieldModel model, Segment segment, double least_pressure, const char* floor) {
   const Parameters parameters = material(model);
   const Properties at = properties_at(parameters, 0.1);
@@ -84,7 +84,7 @@ void yield(benchmark::State& state, YieldModel model, Segment segment, double le
            [&](double p) { return yield_on(parameters, at, {.segment = segment}, p, -0.5); });
 }
 
-/// Right-hand side of a material point that yields in a die.
+/// Times the rates of a material point that yields in a die.
 void plastic_rates(benchmark::State& state, YieldModel model, const char* floor) {
   MaterialPoint point({.parameters = material(model), .yield_pressure = 1e6});
   std::vector<double> y(point.unknowns().size());
@@ -97,7 +97,7 @@ void plastic_rates(benchmark::State& state, YieldModel model, const char* floor)
   point.guard_values(0.0, y, yielding);
   const double xi = -yielding[0];
   static_cast<void>(point.fire(std::array<std::size_t, 1>{0}, xi, y, log));
-  // A stretch over which the state is still near to the surface.
+  // An interval of xi so short that the state, which is not integrated, stays close to the yield surface.
   time_law(state, floor, xi, xi + 1e-4, [&](double at) {
     point.rates(at, y, dy);
     return dy[0];

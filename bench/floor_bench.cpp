@@ -1,5 +1,5 @@
-// Whole histories over their floor: the time of a method that evaluated the law once for every contact (or point) and
-// row of the history, and did nothing else.
+// Time of whole histories over their floor. The floor is the time of one evaluation of the law for every contact (or
+// material point) and row of the history, without anything else.
 
 #include <benchmark/benchmark.h>
 
@@ -29,13 +29,14 @@ namespace fs = std::filesystem;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// A scenario of the folder of ready ones, as the list of the command `bench` has it: twenty output points a step.
+/// Reads a ready scenario with twenty output points per step, as the command `bench` runs it.
 CheckedScenario ready_scenario(const std::string& file, std::vector<std::string> overrides = {}) {
   overrides.emplace_back("output.points=20");
   return read_scenario(fs::path(MONOGRAIN_SOURCE_DIR) / "scenarios" / file, overrides);
 }
 
-/// The scenario's history by the integrator that it chooses.
+/// Runs a scenario with the integrator that it chooses.
+/// @param seconds  gets the time of the run without that of making the scene; may be null
 RunRecord history_of(const CheckedScenario& scenario, double* seconds = nullptr) {
   Scene scene = make_scene(scenario);
   const std::string integrator = choose_integrator(scenario.numerics.integrator, *scene.system).used;
@@ -45,7 +46,7 @@ RunRecord history_of(const CheckedScenario& scenario, double* seconds = nullptr)
   return record;
 }
 
-/// Columns of a history, by name.
+/// Values of a history by row and name of the column.
 class Columns {
  public:
   explicit Columns(const Table& history) : history_(history) {}
@@ -61,7 +62,8 @@ class Columns {
   const Table& history_;
 };
 
-/// @param places  where the law is evaluated, one for every contact and row
+/// Time of one evaluation of the law [s], the least of several batches.
+/// @param places  arguments of the law, one for every contact and row of the history
 template <class Place, class Law>
 double seconds_of_one(const std::vector<Place>& places, Law&& law) {
   constexpr int k_batches = 50;
@@ -77,6 +79,7 @@ double seconds_of_one(const std::vector<Place>& places, Law&& law) {
   return least / (k_repeats * static_cast<double>(places.size()));
 }
 
+/// Times runs of a scenario, and sets counters for the evaluations of the floor and the ratio of run and floor.
 template <class Place, class Law>
 void time_history(benchmark::State& state, const CheckedScenario& scenario, const std::vector<Place>& places,
                   Law&& law) {
@@ -95,7 +98,7 @@ void time_history(benchmark::State& state, const CheckedScenario& scenario, cons
   state.counters["over_the_floor"] = fastest / (count * one);
 }
 
-/// Contacts that are loaded for the first time.
+/// Times the history of plastic contacts on their primary loading branch.
 void plastic_history(benchmark::State& state, const std::string& file, const std::vector<std::string>& overrides) {
   using plastic::Regime;
   struct Place {
@@ -153,7 +156,7 @@ void compressible_history(benchmark::State& state) {
   });
 }
 
-/// Where the point is elastic, its stress goes on in a straight line: no evaluation.
+/// Times the history of a material point. Elastic rows do not count: stress is linear there and needs no evaluation.
 void material_point_history(benchmark::State& state) {
   using namespace compressible;
   struct Place {

@@ -1,4 +1,4 @@
-// One whole history of the default scene by every integrator: time inside the integrator beside the error of the curve.
+// History of the default scene by every integrator: time of a run, and error of its forces against `direct`.
 
 #include <benchmark/benchmark.h>
 
@@ -18,7 +18,7 @@ RunRecord history(const CheckedScenario& scenario, const std::string& integrator
   return record_run(scene, integrator, {rtol, 1e-4 * rtol}, scenario.output);
 }
 
-/// Largest difference of a force over its largest magnitude; rows of both runs stand at the same instants.
+/// Largest difference of a force over its largest magnitude, among all contacts. Both tables have the same instants.
 double force_error(const Table& reference, const Table& other) {
   double worst = 0.0;
   for (const Column& column : reference.columns()) {

@@ -1,5 +1,5 @@
-// Cost of one evaluation of the MDR contact. The label of each is the cost floor: what a prototype took on one core of
-// about 3 GHz (g++ -O3, best of several runs).
+// Cost of one evaluation of the MDR contact. The label of each benchmark is its cost floor: the time of a prototype on
+// one core of about 3 GHz (g++ -O3, best of several runs).
 #include <benchmark/benchmark.h>
 
 #include "elastic/hertz.hpp"
@@ -12,7 +12,7 @@ namespace {
 constexpr double k_radius = 1.05;
 constexpr double k_overlap_max = 0.3;
 
-/// A contact of a material with E/Y = 20 that has yielded.
+/// A yielded contact of a material with E/Y = 20.
 struct Dent {
   Material material = make_material(1.0, 0.3, 0.05);
   double area_constant = yield_area_constant(material.yield_overlap_ratio, k_radius);

@@ -1,5 +1,6 @@
 // Cost of one state of the nonlocal formulation, along a compression in 200 points up to just below its limit. The
-// label of each is the cost floor: what a prototype with fixed sizes took on one core (g++ -O3, best of several runs).
+// label of each benchmark is its cost floor: the time of a prototype with fixed sizes on one core (g++ -O3, best of
+// several runs).
 #include <algorithm>
 #include <cstddef>
 #include <numbers>
@@ -19,9 +20,10 @@ constexpr int k_points = 200;
 
 struct WallSet {
   std::vector<ContactClass> classes;
-  double end;  ///< displacement of the driven walls just below the limit
+  double end;  ///< displacement of the driven walls over R0, just below the limit
 };
 
+/// A contact class of the walls with these normals and their opposite walls.
 ContactClass walls(std::vector<Eigen::Vector3d> normals) {
   std::vector<Eigen::Vector3d> both = normals;
   for (const Eigen::Vector3d& normal : normals) both.emplace_back(-normal);
@@ -37,7 +39,7 @@ WallSet oblique_die() {
           0.442};
 }
 
-/// The same with every wall on its own.
+/// The wall set with a contact class for every wall.
 WallSet single(const WallSet& set) {
   WallSet result{{}, set.end};
   for (const ContactClass& group : set.classes) {
@@ -46,7 +48,8 @@ WallSet single(const WallSet& set) {
   return result;
 }
 
-/// The walls of the first class move, with an equal share of a step of the program for every point.
+/// Ramps that move the walls of the first class of `grouped` and keep the others; `set` has the classes of `grouped`,
+/// or one class for each wall.
 std::vector<Ramp> compression(const WallSet& set, const WallSet& grouped) {
   std::vector<Ramp> ramps(set.classes.size());
   const std::size_t driven = set.classes.size() == grouped.classes.size() ? 1 : grouped.classes[0].normals.size();
@@ -54,6 +57,7 @@ std::vector<Ramp> compression(const WallSet& set, const WallSet& grouped) {
   return ramps;
 }
 
+/// Times the solution of one state; linear extrapolation from the last two states gives the first guess.
 void solve(benchmark::State& state, const WallSet& set, const WallSet& grouped, const char* floor) {
   Contacts contacts({k_poisson_ratio, Terms::four}, set.classes, Centre::fixed);
   const std::vector<Ramp> ramps = compression(set, grouped);
@@ -87,7 +91,7 @@ BENCHMARK_CAPTURE(solve, hydrostatic_walls, single(hydrostatic()), hydrostatic()
 BENCHMARK_CAPTURE(solve, oblique_die_classes, oblique_die(), oblique_die(), "floor 430 ns");
 BENCHMARK_CAPTURE(solve, oblique_die_walls, single(oblique_die()), oblique_die(), "floor 1100 ns");
 
-/// A state of the oblique die in its middle, every wall on its own.
+/// A state of the oblique die at half its compression, with a contact class for every wall.
 struct Loaded {
   WallSet set = single(oblique_die());
   Contacts contacts{{k_poisson_ratio, Terms::four}, set.classes, Centre::fixed};

@@ -1,5 +1,5 @@
-// Cost of one evaluation of the packing law. The label of each is the cost floor: what a prototype with everything of
-// the packing worked out beforehand took on one core (g++ -O3, best of several runs).
+// Cost of one evaluation of the packing law. The label of each benchmark is its cost floor: the time of a prototype
+// with precomputed constants of the packing on one core (g++ -O3, best of several runs).
 #include <benchmark/benchmark.h>
 
 #include "law_timing.hpp"

@@ -1,6 +1,6 @@
 // Cost of one evaluation of the laws for plastic particles: force, contact radius and pressure with their slopes. The
-// label of each is the cost floor: what a prototype with everything of the material worked out beforehand took on one
-// core (g++ -O3, best of several runs).
+// label of each benchmark is its cost floor: the time of a prototype with precomputed material constants on one core
+// (g++ -O3, best of several runs).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace monograin::plastic {
 namespace {
 
 constexpr double k_exponent = 0.35;
-/// How far off the x is with which the inversion of a force begins: about that between two output points.
+/// First guess over solution when a force is inverted; 1 % is about the distance of two output points.
 constexpr double k_guess = 0.99;
 
 const SimilarityLaw& similarity() {
@@ -52,7 +52,7 @@ void similarity_work(benchmark::State& state, const char* floor) {
 
 // --- the laws with regimes
 
-/// The stretch of x over which a law has a regime.
+/// Interval of x = displacement/radius in which a law has a regime.
 struct Stretch {
   double begin = 0.0;
   double end = 0.0;
@@ -80,7 +80,7 @@ template <class Law>
 void under_force(benchmark::State& state, const Law& law, Regime regime, const char* floor) {
   const Stretch stretch = stretch_of(law, regime);
   time_law(state, floor, stretch.begin, stretch.end, [&](double x) {
-    // The force itself costs one evaluation more.
+    // The benchmark includes this evaluation of the force in addition to the inversion.
     const double force = state_in(law, regime, x).force;
     return approach_under(law, force, std::max(k_guess * x, stretch.begin));
   });
