@@ -1,5 +1,5 @@
-// A law of one's own outside of monograin: a linear spring at every wall. It becomes a model like the others, with its
-// keys, direct solution, integrators, events and energies.
+// Adds your own law to monograin: a linear spring at every wall. model_of() makes it a model like the built-in ones,
+// with keys, direct solution, integrators, events and energies.
 #include <monograin/laws/contacts/model_of.hpp>
 #include <monograin/laws/stress/draw.hpp>
 #include <monograin/monograin.hpp>
@@ -10,11 +10,11 @@
 
 namespace mg = monograin;
 
-/// One contact. Lengths are in R0, forces in unit_force().
+/// Law of one contact. Lengths are over R0, forces over unit_force().
 struct Spring {
-  struct Branch {};  ///< unloading goes back on the same line
+  struct Branch {};  ///< memory of a contact: empty, because unloading retraces the loading line
   static constexpr std::array<std::string_view, 2> k_regimes{"open", "elastic"};
-  double stiffness = 1.0;  ///< k [Pa]: force over R0 and displacement
+  double stiffness = 1.0;  ///< k [Pa]: force/(R0 displacement)
 
   double unit_force(double radius) const { return stiffness * radius * radius; }
   double force(Branch, double d) const { return d; }
@@ -34,7 +34,7 @@ constexpr std::array<std::string_view, 1> k_domain{"small displacements; not che
 
 Spring law_of(const mg::ModelInput& input) { return {input.material("stiffness")}; }
 
-/// Material that the stress test draws for the law.
+/// Draws a material and a program for the stress test.
 mg::ProgramBounds draw(mg::Dice&, mg::DrawnMaterial& drawn) {
   drawn.values = {{"stiffness", 1.0}};
   return {};

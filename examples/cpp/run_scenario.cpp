@@ -1,4 +1,4 @@
-// Builds a scenario key by key, runs it, reads its curves, and compares it with a softer particle.
+// Builds a scenario key by key, runs it, reads its curves, and compares them with those of a softer particle.
 #include <monograin/monograin.hpp>
 
 #include <algorithm>

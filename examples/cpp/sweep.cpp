@@ -1,4 +1,4 @@
-// Runs a scenario for many yield stresses on all cores, and keeps two numbers of each run.
+// Runs a scenario for many yield stresses on all cores, and prints two numbers of each run.
 #include <monograin/monograin.hpp>
 
 #include <cstdio>

@@ -2,8 +2,8 @@
 Calibration by a Markov chain
 =============================
 
-The posterior of two material constants, against the standard errors that ``calibrate`` gives. The data are those of the
-ready calibration ``uniaxial``: a particle is pressed between two walls and withdrawn.
+The posterior of two material constants, compared with the standard errors of ``calibrate``. The data are those of the
+ready calibration ``uniaxial``: loading and unloading of a particle between two walls.
 """
 
 import argparse
@@ -30,8 +30,8 @@ options = parser.parse_args()
 # The fit
 # -------
 #
-# ``calibrate`` finds the values with the least sum of squares. It takes the law as linear in the parameters nearby,
-# which gives the standard errors.
+# ``calibrate`` finds the values with the least sum of squares. It linearises the law in the parameters, which gives the
+# standard errors.
 
 calibration = mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml")
 parameters = calibration.parameters
@@ -44,8 +44,8 @@ for key, parameter in parameters.items():
 # A program through the data
 # --------------------------
 #
-# The walls go to the largest displacement and back, one second for each way. The output times of the scenario are those
-# at which the walls pass the data.
+# The walls move to the largest displacement and back, one second in each direction. The scenario has an output time for
+# each displacement of the data.
 
 fit = calibration.fit
 displacement = fit["axial.displacement"]
@@ -76,7 +76,7 @@ prepared = (
 # The posterior
 # -------------
 #
-# Noise is Gaussian, with the standard deviation that the fit leaves. Priors are flat between the bounds of the
+# Noise is Gaussian, with the standard deviation of the residuals of the fit. Priors are flat between the bounds of the
 # calibration.
 
 bounds = np.array([parameter.bounds for parameter in parameters.values()])
@@ -84,7 +84,7 @@ bounds = np.array([parameter.bounds for parameter in parameters.values()])
 
 def residuals(values):
     run = prepared.run(values)
-    # Events and corners of the program have rows of their own beside the output points.
+    # Rows around events and ends of steps have row = -1 or 1; output points have row = 0.
     return run["axial.force"][run["row"] == 0][-len(measured) :] - measured
 
 
@@ -101,8 +101,8 @@ def log_posterior(values):
 # The chain
 # ---------
 #
-# A walker takes its proposals from a density of the others, so that successive samples are nearly independent. The
-# standard deviation of N independent samples is known to a share of 1/sqrt(2 N): 1 % takes many thousand.
+# A walker draws its proposals from a density of the other walkers, so that successive samples are nearly independent.
+# The relative error of the standard deviation of N independent samples is 1/sqrt(2 N): 1 % needs 5000 of them.
 
 np.random.seed(options.seed)
 start = values + errors * np.random.standard_normal((options.walkers, len(values)))
@@ -129,7 +129,7 @@ if options.tolerance is not None and abs(differences).max() > options.tolerance:
     sys.exit(f"a standard deviation differs by more than {100.0 * options.tolerance:g} %")
 
 # %%
-# Every sample of the chain, and the ellipse on which the fit expects a density of exp(-2) of the largest one:
+# Every sample of the chain, and the ellipse on which the density that the fit expects is exp(-2) of its maximum:
 
 figure = Figure(figsize=(6.0, 4.0), layout="constrained")
 axes = figure.add_subplot()

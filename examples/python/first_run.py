@@ -23,25 +23,25 @@ run = softer.run()
 print(run)
 
 # %%
-# Every column of the history is an array of numpy, in SI units:
+# Every column of the history is a numpy array, in SI units:
 
 force, displacement = run["axial.force"], run["axial.displacement"]
 print(f"largest force {force.max():.1f} {run.units['axial.force']} at {1e3 * displacement[force.argmax()]:.2f} mm")
 
 # %%
-# Events tell the story of the run:
+# Events are the instants at which a regime changes:
 
 for event in run.events:
     print(f"{event['time']:.6f} s  {event['class']:<10} {event['event']}")
 
 # %%
-# How far apart are two runs? ``compare`` measures one curve against another:
+# ``compare`` measures the difference of two runs:
 
 difference = mg.compare(scenario.run(), run, x="axial.displacement", y="axial.force").curves[0]
 print(f"against 50 MPa the force differs by up to {100.0 * difference.linf:.0f} % of the largest one")
 
 # %%
-# ``save`` leaves the files that ``monograin run`` leaves, ``plot`` draws them with matplotlib:
+# ``save`` writes the files that ``monograin run`` writes, ``plot`` draws the curves with matplotlib:
 
 run.save(options.output)
 figure = run.plot()

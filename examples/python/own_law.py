@@ -2,8 +2,8 @@
 A law of your own
 =================
 
-Tatara's elastic sphere at large compression, held against the package's laws and against a run. A function of arrays is
-all it takes.
+Tatara's elastic sphere at large compression, compared with laws of the package and with a run. A law of your own is a
+function of arrays.
 """
 
 import argparse
@@ -49,8 +49,7 @@ hertz = mg.laws.hertz.force(modulus, RADIUS, displacement)
 curved = mg.laws.curved_sphere.force(modulus, RADIUS, displacement)
 
 # %%
-# And a run of model ``nonlocal``, in which both walls act on each other through the sphere. A scenario may be a
-# dictionary:
+# A run of model ``nonlocal``, in which the walls interact through the sphere. A scenario may be a dictionary:
 
 nonlocal_run = mg.Scenario(
     {
@@ -66,14 +65,14 @@ nonlocal_run = mg.Scenario(
 computed = np.interp(displacement, nonlocal_run["axial.displacement"], nonlocal_run["axial.force"])
 
 # %%
-# Both ways of letting the walls act on each other agree:
+# Both descriptions of the interaction of the walls agree:
 
 print(f"{'delta/R':>8}{'Hertz':>10}{'curved':>10}{'nonlocal':>10}{'own law':>10}   force [N]")
 for row in zip(displacement / RADIUS, hertz, curved, computed, force):
     print(f"{row[0]:8.4f}" + "".join(f"{value:10.1f}" for value in row[1:]))
 
 # %%
-# Over Hertz's force, the four differ from the start:
+# Divided by Hertz's force, the four curves differ from the start:
 
 figure = Figure(figsize=(6.0, 4.0), layout="constrained")
 axes = figure.add_subplot()

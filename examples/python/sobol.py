@@ -3,8 +3,8 @@ Sobol indices
 =============
 
 Which inputs of a die compaction do the largest force and the final radius depend on? The first-order index of an input
-is the share of the variance that goes when this input is known. The total index is the share that stays when all others
-are known.
+is the share of the variance that vanishes when this input is known. The total index is the share that remains when all
+other inputs are known.
 """
 
 import argparse
@@ -36,8 +36,8 @@ RANGES = {
 COLUMNS = ["max(axial.force)", "end(apparent_radius)"]
 
 # %%
-# The design is Saltelli's: two independent samples A and B, and for each input the sample A with that column of B. N
-# samples of k inputs are N (k + 2) runs. Both samples come from one scrambled Sobol sequence.
+# The design is Saltelli's: two independent samples A and B, and for each input a copy of A with this input from B. N
+# samples of k inputs need N (k + 2) runs. Both samples come from one scrambled Sobol sequence.
 
 
 def saltelli(samples, inputs, generator):
@@ -48,12 +48,12 @@ def saltelli(samples, inputs, generator):
 
 
 # %%
-# The estimators are those that Saltelli et al. (2010), Computer Physics Communications 181, 259-270, recommend. Without
-# its mean, the estimate of the first order has less noise.
+# The estimators are those that Saltelli et al. (2010), Computer Physics Communications 181, 259-270, recommend. The
+# mean of the results is subtracted first, which reduces the noise of the first-order estimate.
 
 
 def indices(results):
-    """First-order and total indices, of shape (2, inputs, columns), of results in the order of the design."""
+    """First-order and total indices, of shape (2, inputs, columns), from results in the order of the design."""
     a, b, *mixed = results - results.mean(axis=(0, 1))
     variance = np.concatenate([a, b]).var(axis=0)
     first = [(b * (m - a)).mean(axis=0) for m in mixed]
@@ -62,7 +62,7 @@ def indices(results):
 
 
 # %%
-# Several designs, each scrambled anew, tell how far the indices may be trusted.
+# The scatter of several designs, each scrambled anew, gives the confidence intervals of the indices.
 
 lower, upper = np.array(list(RANGES.values())).T
 generator = np.random.default_rng(options.seed)
