@@ -1,4 +1,4 @@
-// Exceptions of the program as those of the package.
+// Translation of C++ exceptions into exceptions of the Python package.
 
 #include "bindings.hpp"
 #include "monograin/faults.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::string_view k_override = "--set '";
 
-/// The name of the text with the fault. Overrides come from `replace`; there is no command line.
+/// Name of the text with the fault. An override, which the program calls `--set`, comes from `replace` in Python.
 std::string file_of(const SourceLocation& where) {
   if (!where.file.starts_with(k_override)) return where.file;
   return "replace '" + where.file.substr(k_override.size());

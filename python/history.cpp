@@ -1,4 +1,4 @@
-// Histories and other tables, whose columns numpy sees without a copy.
+// Histories and other tables; numpy arrays share the values of their columns without a copy.
 
 #include "monograin/history.hpp"
 
@@ -10,7 +10,7 @@
 namespace monograin::python {
 namespace {
 
-/// @throws py::key_error naming the nearest column
+/// Column of that name. @throws py::key_error for an unknown name; the message suggests the nearest column
 const History::Column& column_of(const History& history, const std::string& name) {
   try {
     return history.column(name);
@@ -19,7 +19,7 @@ const History::Column& column_of(const History& history, const std::string& name
   }
 }
 
-/// A read-only array over the values of a column; it keeps the history alive, and that its values.
+/// A read-only array over the values of a column. The array keeps the history alive, which owns the values.
 py::array values_of(const py::object& self, const std::string& name) {
   const std::vector<double>& values = column_of(self.cast<const History&>(), name).values;
   py::array_t<double> array({values.size()}, {sizeof(double)}, values.data(), self);

@@ -1,5 +1,5 @@
-// Laws in closed form, element by element over arrays that broadcast. Names and units are those of the package's Python
-// files, which also say where a law comes from and where it ends.
+// Laws in closed form, evaluated element by element over arrays that broadcast. The Python files of the package
+// describe arguments, units, sources and domains.
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -27,7 +27,7 @@ namespace {
 
 using Numbers = py::array_t<double>;
 
-/// The value, or nan where the law has none. Arguments that no law takes (std::invalid_argument) are errors.
+/// Calls `value` and returns NaN outside the domain of the law (std::domain_error). std::invalid_argument passes on.
 template <class Value>
 double or_nan(Value&& value) {
   try {
@@ -37,13 +37,13 @@ double or_nan(Value&& value) {
   }
 }
 
-/// A function of numbers as one of arrays.
+/// Makes a function of numpy arrays from a function of numbers; NaN outside the domain of the law.
 template <class... Args>
 auto elementwise(double (*function)(Args...)) {
   return py::vectorize([function](Args... args) { return or_nan([&] { return function(args...); }); });
 }
 
-/// Keeps what was made last: the parameters of a law seldom change from one element to the next.
+/// Keeps the last law made, because parameters seldom change from one element to the next.
 template <class Law, std::size_t N>
 class LastMade {
  public:
@@ -62,6 +62,7 @@ class LastMade {
   std::optional<Law> law_;
 };
 
+/// Value that belongs to a word. @throws std::invalid_argument that lists the known words
 template <class Value>
 Value word(const std::string& given, std::initializer_list<std::pair<const char*, Value>> known) {
   std::string names;
@@ -74,7 +75,8 @@ Value word(const std::string& given, std::initializer_list<std::pair<const char*
 
 // --- plastic spheres between walls
 
-/// One quantity of a contact. The law's x is the displacement of a wall over the radius.
+/// Quantity of a contact between sphere and wall, in SI units; NaN outside the domain of the law, 0 without contact.
+/// @param quantity  contact_radius, mean_pressure, force or work
 double plastic_quantity(const plastic::Law& law, const std::string& quantity, double strength, double radius,
                         double displacement) {
   const double x = displacement / radius;
@@ -123,7 +125,9 @@ py::object similarity(const std::string& quantity, const std::string& rule, cons
   })(strength, exponent, radius, displacement);
 }
 
-/// @param quantity  contact_radius, force or work under an approach; approach under a force
+/// Quantity of a contact of two plastic spheres, in SI units.
+/// @param quantity  contact_radius, force or work at an approach; approach under a force
+/// @param argument  the approach [m], or the force [N]
 py::object similarity_pair(const std::string& quantity, const std::string& rule, const Numbers& strength,
                            const Numbers& exponent, const Numbers& first_radius, const Numbers& second_radius,
                            const Numbers& argument) {
@@ -204,7 +208,9 @@ py::object mdr_plastic(const std::string& quantity, const Numbers& youngs_modulu
   })(youngs_modulus, poisson_ratio, yield_stress, radius, overlap);
 }
 
-/// Force at which a contact is torn off, or the contact radius then.
+/// Force at pull-off, or the contact radius at pull-off.
+/// @param quantity  force; any other text: contact radius
+/// @param control   controlled quantity at pull-off: force or displacement
 py::object mdr_pull_off(const std::string& quantity, const std::string& profile, const std::string& control,
                         const Numbers& composite_modulus, const Numbers& radius, const Numbers& surface_energy) {
   const mdr::ElasticProfile shape = profile_named(profile);

@@ -1,4 +1,4 @@
-// The catalogue of models and the language, as dictionaries.
+// The catalogue of models as dictionaries, the JSON Schema of scenarios, and the default scenario.
 
 #include "catalogue.hpp"
 

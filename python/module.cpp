@@ -1,5 +1,5 @@
-// The compiled half of the package: what the program does, as classes and functions without defaults and documentation.
-// The package's Python files add both.
+// Compiled module of the Python package: classes and functions without default arguments and documentation. The Python
+// files of the package add both.
 
 #include "bindings.hpp"
 #include "monograin/version.hpp"

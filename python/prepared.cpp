@@ -1,4 +1,4 @@
-// Many runs of one scenario with other numbers.
+// Many runs of one scenario with different values of some keys.
 
 #include "monograin/prepared.hpp"
 
@@ -24,7 +24,8 @@ RunResult run_prepared(const PreparedScenario& prepared, const Numbers& values) 
   return prepared.run(numbers);
 }
 
-/// @return results row by row, the status of every row, and what a signal has raised in between, or None
+/// Runs the samples without the interpreter's lock.
+/// @return values row by row, the status of every sample, and the exception that a signal handler raised, or None
 py::tuple map_prepared(const PreparedScenario& prepared, const Numbers& samples,
                        const std::vector<std::string>& formulas, int threads) {
   const std::span<const double> numbers = span_of(samples);

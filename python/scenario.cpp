@@ -17,7 +17,7 @@
 namespace monograin::python {
 namespace {
 
-/// @throws ScenarioError with every fault
+/// Checks a scenario and measures the time. @throws ScenarioError with every fault that it finds
 SoundScenario checked_scenario(Scenario source) {
   const auto start = std::chrono::steady_clock::now();
   SoundScenario made{.source = std::move(source), .checked = {}};
@@ -31,7 +31,7 @@ SoundScenario parse_sound(std::string text, std::string origin, std::vector<std:
 }
 
 SoundScenario read_sound(const std::string& file) {
-  // The room of the language has a function of that name, too.
+  // The type selects the overload of the public header; the room `scenario` also has a function read_scenario.
   Scenario (*const read)(const std::filesystem::path&) = read_scenario;
   return checked_scenario(read(file));
 }

@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// @return the folder of the results, and how many runs it still lacks
+/// Runs one shard of a sweep, and writes its bands once all runs are there.
+/// @return the folder of the results, and the number of runs that it still lacks
 py::tuple sweep(const std::string& file, const std::string& output, int threads, std::size_t shard,
                 std::size_t shard_count) {
   if (threads < 0) throw std::invalid_argument("threads: expected 0 for one for each core, or more");
@@ -43,7 +44,7 @@ py::tuple sweep(const std::string& file, const std::string& output, int threads,
   return py::make_tuple(folder.string(), outcome.runs_missing);
 }
 
-/// Runs what is left of a sweep and writes its sensitivities. @return the folder
+/// Runs the missing runs of a sweep and writes its sensitivities. @return the folder of the results
 std::string sensitivity(const std::string& file, const std::string& output, int threads, double confidence) {
   const py::tuple swept = sweep(file, output, threads, 1, 1);
   const std::string folder = swept[0].cast<std::string>();
@@ -65,8 +66,9 @@ struct Fitted {
   History fit;
 };
 
-/// @param output      folder for the files of the program; empty: none are written
-/// @param confidence  nan: that of the file
+/// Runs a calibration.
+/// @param output      folder for the files that the program writes; empty: none are written
+/// @param confidence  confidence level in (0, 1); NaN: the level of the calibration file
 Fitted calibrate_file(const std::string& file, const std::string& output, double confidence) {
   Calibration calibration = [&] {
     const py::gil_scoped_release released;
@@ -99,18 +101,19 @@ Fitted calibrate_file(const std::string& file, const std::string& output, double
 /// Result of a plan of an experiment, in memory.
 struct Designed {
   std::string name;
-  std::vector<std::string> programs;    ///< names of all
-  std::vector<std::string> candidates;  ///< names of those that are not planned
-  bool has_planned = false;             ///< whether the table begins with the rows of the planned programs
+  std::vector<std::string> programs;    ///< names of all programs
+  std::vector<std::string> candidates;  ///< names of the programs that are not planned
+  bool has_planned = false;             ///< true if the table begins with the rows of the planned programs
   std::optional<std::string> best_by_volume;
   std::optional<std::string> best_by_variances;
-  std::vector<std::vector<std::string>> notes;  ///< by program
+  std::vector<std::vector<std::string>> notes;  ///< notes of each program, in the order of `programs`
   std::string text;
   std::string no_figure;
   History table;
 };
 
-/// @param output  folder for the files of the program; empty: none are written
+/// Evaluates a plan of an experiment.
+/// @param output  folder for the files that the program writes; empty: none are written
 Designed design_file(const std::string& file, const std::string& output) {
   const ExperimentPlan plan = [&] {
     const py::gil_scoped_release released;
