@@ -5,7 +5,7 @@
 >>> run.status
 'complete'
 
-All numbers are in SI units: a str such as ``"30 MPa"`` has its own.
+All numbers are in SI units. A str such as ``"30 MPa"`` has a unit of its own.
 """
 
 from . import laws

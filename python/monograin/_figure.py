@@ -15,23 +15,23 @@ if TYPE_CHECKING:
 
     from .runs import Run
 
-# Okabe and Ito's colours, which the colour-blind can tell apart.
+# Colours of Okabe and Ito, which colour-blind readers can distinguish.
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 _STYLES = {"loading": "-", "unloading": "--", "reloading": ":"}
-# Where the program turns, the curve does too.
+# Events that are not marked, because the curve itself shows the corners of the program.
 _PROGRAM_EVENTS = ("step-end", "until-met")
 
 
 class _Panel(NamedTuple):
     label: str
-    columns: list[tuple[str, str]]  # of the curves: legend, column
-    scale: float
-    is_area: bool = False  # drawn is pi times the square of the column
+    columns: list[tuple[str, str]]  # legend and column of each curve
+    scale: float  # divides the values
+    is_area: bool = False  # true: the panel shows pi times the square of the column
 
 
 class _Sheet(NamedTuple):
     label: str
-    column: str  # of the abscissa
+    column: str  # column of the abscissa
     scale: float
     panels: list[_Panel]
 
@@ -77,7 +77,7 @@ def _draw(
 
 
 def _of_walls(history: Table) -> Optional[_Sheet]:
-    """Four quantities of every contact class over the displacement of the first one that moves."""
+    """Force, pressure, area and apparent radius over the displacement of the first contact class that moves."""
     classes = [name[: -len(".displacement")] for name in history.columns if name.endswith(".displacement")]
     if not classes:
         return None
@@ -112,7 +112,7 @@ def _of_walls(history: Table) -> Optional[_Sheet]:
 
 
 def _of_body(history: Table) -> Optional[_Sheet]:
-    """Quantities of a packing or a material point over the one that it is driven through."""
+    """Quantities of a packing over its packing fraction, or of a material point over its axial strain."""
     modulus = _scale(history, "E") or 1.0
     pressure = _scale(history, "yield_pressure") or 1.0
     sheets = (
@@ -170,12 +170,12 @@ def _events(events: Table) -> dict[str, list[int]]:
 
 
 def _concerns(events: Table, row: int, contact: str) -> bool:
-    """True for an event of that contact class; events of the particle stand on its own curve."""
+    """True if an event belongs to the contact class. The curve of the particle, named "", shows all."""
     return contact in str(events["class"][row]).split("/") or not contact
 
 
 def _phases(x: NDArray[np.float64]) -> list[tuple[str, slice]]:
-    """Pieces of the path: beyond the largest x so far, back, or forth again below it. Neighbours share a row."""
+    """Splits the path into loading (beyond the largest x so far), unloading and reloading. Neighbours share a row."""
     pieces: list[tuple[str, slice]] = []
     largest, phase = x[0], "loading"
     for row in range(1, len(x)):

@@ -14,12 +14,12 @@ _NEEDS_ESCAPE = re.compile(r'[\x00-\x1f"\\\x7f]')
 
 
 def text_of(value: Any, key: str = "value") -> str:
-    """Returns a value as it stands behind ``key =``: tables become inline tables.
+    """Returns a value as TOML text that can follow ``key =``; mappings become inline tables.
 
     Args:
-        value: str, float, int, bool, a list or tuple of values, a mapping from str to values, a path, or numpy's
-            scalars and arrays.
-        key: names the value in messages.
+        value: str, float, int, bool, a list or tuple of values, a mapping from str to values, a path, or a scalar or
+            array of numpy.
+        key: name of the value in messages.
 
     Raises:
         ValueError: for nan and infinities, integers beyond 64 bits, and text that is not Unicode.
@@ -70,7 +70,7 @@ def _is_tables(value: Any) -> bool:
 
 def _lines(table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
     where = ".".join(path)
-    # A key behind a table's heading would belong to that table.
+    # Values come before tables: a key after the heading of a table would belong to that table.
     for key, value in table.items():
         if not isinstance(value, Mapping) and not _is_tables(value):
             yield f"{_key(key, where)} = {text_of(value, '.'.join((*path, key)))}"

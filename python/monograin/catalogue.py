@@ -16,15 +16,15 @@ class Key:
     """A key that a model reads.
 
     Attributes:
-        name: as in a scenario file.
-        meaning: a phrase.
+        name: name of the key, as in a scenario file.
+        meaning: the quantity or option that the key sets, as a phrase.
         kind: ``"quantity"``, ``"choice"``, ``"toggle"`` or ``"file"``.
-        unit: of a quantity in SI; ``"-"`` of a pure number; empty for other kinds.
-        lower, upper: bounds of a quantity.
-        lower_is_open, upper_is_open: whether a bound itself is out.
-        default: value where the key is absent; None if there is none.
-        choices: words of a choice.
-        is_required: whether the key must be given.
+        unit: SI unit of a quantity; ``"-"`` for a pure number; empty for other kinds.
+        lower, upper: bounds of a quantity, in ``unit``.
+        lower_is_open, upper_is_open: True if the bound itself is not admissible.
+        default: value that an absent key has; None if there is none.
+        choices: admissible words of a choice.
+        is_required: True if the key must be given.
     """
 
     name: str
@@ -45,16 +45,19 @@ class Model:
     """A contact law, or a law of a body without walls.
 
     Attributes:
-        name, summary: what it is.
-        references: publications that it is taken from, the main one first; a line each, with DOI.
-        source: where in them the law stands, and which misprints are corrected; may be empty.
+        name: name of the model in scenario files.
+        summary: the model in a phrase.
+        references: publications of the law, the main one first; a line each, with DOI.
+        source: equations of the publications that give the law, and misprints that are corrected; may be empty.
         material: keys of ``[material]``, by name.
-        options: keys of the table that bears the model's name.
-        steps: quantities that steps prescribe of a model without walls.
+        options: keys of the table named after the model, by name.
+        steps: quantities that a step prescribes in a model without walls, by name.
         presets: materials that ``preset`` in ``[material]`` may name, with their source.
-        configurations: wall sets; empty where the model has no walls.
-        has_walls, has_free_centre, has_profile: what the model knows.
-        regimes, events: names with a sentence each.
+        configurations: wall sets that a scenario may name; empty if the model has no walls.
+        has_walls: True if the model has a particle between walls.
+        has_free_centre: True if ``[loading] centre = "equilibrium"`` is allowed.
+        has_profile: True if :meth:`monograin.Run.profile` gives pressure and surface under a contact.
+        regimes, events: names, with a sentence about each.
         validity: limits of the model, a sentence each.
     """
 
@@ -89,12 +92,12 @@ def _model(entry: dict[str, Any]) -> Model:
 
 
 class Parameter(NamedTuple):
-    """A constant that follows from a scenario before anything moves.
+    """A constant of a scenario: a material parameter, or a constant that follows from the material.
 
     Attributes:
-        value: in ``unit``.
-        unit: SI; ``"-"`` of a pure number.
-        symbol: in the source; empty if it has none.
+        value: value in ``unit``.
+        unit: SI unit; ``"-"`` for a pure number.
+        symbol: symbol in the source; empty if it has none.
     """
 
     value: float
@@ -103,9 +106,9 @@ class Parameter(NamedTuple):
 
 
 def parameters(scenario: Scenario) -> dict[str, Parameter]:
-    """Returns the derived constants of a scenario's material and particle, by name.
+    """Returns the constants of particle and material of a scenario, and those that follow from them, by name.
 
-    They are those that ``monograin models --parameters FILE`` prints.
+    ``monograin models --parameters FILE`` prints the same constants.
     """
     return {name: Parameter(value, unit, symbol) for name, value, unit, symbol in scenario._core.parameters()}
 
@@ -117,7 +120,7 @@ def schema() -> dict[str, Any]:
 
 
 def scenario_folder() -> pathlib.Path:
-    """Returns the folder of the ready scenarios; ``sweeps``, ``calibrate`` and ``design`` in it hold files for them."""
+    """Returns the folder of the ready scenarios; it contains folders ``sweeps``, ``calibrate`` and ``design``."""
     return pathlib.Path(__file__).parent / "scenarios"
 
 
@@ -133,7 +136,7 @@ def scenario(name: str = "die") -> Scenario:
         name: one of :func:`scenarios`.
 
     Raises:
-        KeyError: listing the names there are.
+        KeyError: for an unknown name; the message lists the known ones.
     """
     if name not in scenarios():
         raise KeyError(f"there is no ready scenario '{name}'; there are {', '.join(scenarios())}")

@@ -25,7 +25,7 @@ class Fault:
             :meth:`monograin.Scenario.replace`.
         line: line of the fault, from 1.
         column: column of the fault, from 1.
-        text: what was found and what is expected.
+        text: message: what was found and what is expected.
     """
 
     file: str
@@ -38,7 +38,7 @@ class Fault:
 
 
 class ScenarioError(ValueError):
-    """A scenario, sweep or calibration is not right.
+    """A scenario, sweep, calibration or plan has faults.
 
     Attributes:
         faults: every :class:`Fault`, in the order of the text. The message has one line for each.
@@ -56,7 +56,7 @@ class SolverError(RuntimeError):
     """A solver gave up before a run was complete.
 
     Attributes:
-        run: the :class:`monograin.Run` up to there. None in an error that comes from another process.
+        run: the :class:`monograin.Run` up to the failure. None in an error that comes from another process.
     """
 
     def __init__(self, message: str, run: Optional[Run] = None) -> None:
@@ -71,8 +71,8 @@ class Interrupted(KeyboardInterrupt):
     """Ctrl-C has stopped :meth:`monograin.Prepared.map`.
 
     Attributes:
-        table: array of shape (n, columns), as :meth:`monograin.Prepared.map` returns it. Rows that were not run hold nan.
-        statuses: array of n words. It is ``"pending"`` for every row that was not run.
+        table: array of shape (n, columns), as :meth:`monograin.Prepared.map` returns it; nan in rows that were not run.
+        statuses: array of n words; ``"pending"`` for rows that were not run.
     """
 
     def __init__(self, table: NDArray[np.float64], statuses: NDArray[np.str_]) -> None:

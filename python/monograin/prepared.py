@@ -1,4 +1,4 @@
-"""Many runs of one scenario with other numbers."""
+"""Many runs of one scenario with different values of some keys."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from .runs import Run, Scenario, checked
 
 
 class Prepared:
-    """A scenario with keys of numbers that change from run to run; made by :meth:`monograin.Scenario.prepare`.
+    """A scenario that is read once and run with different values of some keys.
 
-    Every run gives the same numbers, bit by bit, as the scenario with these values written into its text.
+    :meth:`monograin.Scenario.prepare` makes it. Results are bitwise equal to those of the scenario with these values in
+    its text.
     """
 
     def __init__(self, scenario: Scenario, keys: Iterable[str]) -> None:
@@ -24,25 +25,25 @@ class Prepared:
 
     @property
     def scenario(self) -> Scenario:
-        """The scenario, with its own numbers."""
+        """The scenario, with its own values of the keys."""
         return self._scenario
 
     @property
     def keys(self) -> list[str]:
-        """Paths of the keys, in the order of the values."""
+        """Paths of the keys that vary, in the order in which ``run`` and ``map`` take their values."""
         return self._core.keys
 
     def run(self, values: ArrayLike, *, check: bool = True) -> Run:
-        """Runs the scenario with these values. Other threads go on meanwhile.
+        """Runs the scenario with these values. Other threads continue during the run.
 
         Args:
             values: array of shape (keys,) in SI units.
             check: as in :meth:`monograin.Scenario.run`.
 
         Raises:
-            ScenarioError: where the scenario refuses a value.
+            ScenarioError: if a value is not admissible.
             SolverError: as in :meth:`monograin.Scenario.run`.
-            ValueError: for another number of values.
+            ValueError: if the number of values is not that of the keys.
         """
         numbers = np.array(values, dtype=float)
         core = self._core.run(numbers)
@@ -63,27 +64,27 @@ class Prepared:
     ) -> Union[NDArray[np.float64], tuple[NDArray[np.float64], NDArray[np.str_]]]:
         """Runs the scenario once for each row of samples, on several threads.
 
-        Numbers agree with those of ``run`` to round-off. What the formulas do not read is not computed: the energies,
-        and, where every name stands alone in ``end``, all rows before the last.
+        Numbers agree with those of ``run`` to round-off. Parts of a history that no formula reads are not computed: the
+        energies and, if every name stands alone in ``end``, all rows before the last.
 
         Args:
-            samples: array of shape (n, keys) in SI units; of one key also (n,).
-            columns: formulas of the history's columns that give one number each, such as ``"max(axial.force)"`` or
-                ``"end(apparent_radius) / 0.01"``: numbers, names of columns, ``+ - * / ^``, brackets, ``sqrt`` and other
-                functions, and ``min``, ``max``, ``last`` (the last value that is defined) and ``end`` (that of the last
-                row, defined or not).
-            threads: 0 for one for each core.
-            statuses: whether to return how the runs ended as well.
+            samples: array of shape (n, keys) in SI units; for a single key also (n,).
+            columns: formulas over the columns of the history with one value each, such as ``"max(axial.force)"`` or
+                ``"end(apparent_radius) / 0.01"``. A formula has numbers, names of columns, ``+ - * / ^``, brackets,
+                ``sqrt`` and other functions, ``min``, ``max``, ``last`` (last defined value) and ``end`` (value in the
+                last row, even if undefined).
+            threads: number of threads; 0: one for each core.
+            statuses: True to return also the status of every run.
 
         Returns:
-            Array of shape (n, columns). A run that stops at a limit of its model, or whose solver gives up, counts up to
-            there. A row is nan where the scenario refuses the values. With ``statuses``, also an array of n words:
-            ``"complete"``, ``"stopped"``, ``"failed"`` or ``"refused"``.
+            Array of shape (n, columns). A run that stops at a limit of its model, or whose solver gives up, is
+            evaluated up to there. A row is nan if the scenario refuses the values. With ``statuses``, also an array of
+            n words: ``"complete"``, ``"stopped"``, ``"failed"`` or ``"refused"``.
 
         Raises:
-            ValueError: for a text that is no formula, a name in it that is no column, a formula that gives more than one
-                number, and samples of another shape.
-            Interrupted: on Ctrl-C, with the rows that are there already. It is a ``KeyboardInterrupt``.
+            ValueError: for a formula that cannot be read, names an unknown column or has more than one value, and for
+                samples of another shape.
+            Interrupted: on Ctrl-C, with the rows that are complete. It is a ``KeyboardInterrupt``.
         """
         if threads < 0:
             raise ValueError(f"threads = {threads}: expected 0 for one for each core, or more")

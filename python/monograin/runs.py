@@ -22,20 +22,20 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 class Scenario:
-    """A checked scenario: a particle, its material, a contact law, walls and what they do.
+    """A checked scenario: a particle, its material, a contact law, and walls with their program.
 
     Args:
         source: TOML text as in a scenario file, or a dict of the same structure. In a dict, a str is a text as in a
             file (``"30 MPa"``), a float is a number in SI units, tables are dicts and arrays of tables are lists of
             dicts.
-        origin: stands for the file's name in messages. Its stem names the scenario, and files that the scenario names
-            are sought beside it.
-        overrides: ``key=value`` texts as the program's ``--set`` takes them.
+        origin: file name that messages show. Its stem names the scenario; file names in the scenario are relative to
+            its folder.
+        overrides: ``key=value`` texts, as for the option ``--set`` of the program.
 
     Raises:
         ScenarioError: with every fault of the scenario.
 
-    A scenario never changes. It can be pickled, and so be sent to other processes.
+    A scenario never changes. It can be pickled, and thus be sent to other processes.
     """
 
     __slots__ = ("_core",)
@@ -52,7 +52,7 @@ class Scenario:
         """Reads and checks a scenario file.
 
         Raises:
-            ScenarioError: with every fault, also where there is no such file.
+            ScenarioError: with every fault of the scenario, or if the file cannot be read.
         """
         scenario = cls.__new__(cls)
         scenario._core = _core.Scenario.read(os.fspath(path))
@@ -62,8 +62,9 @@ class Scenario:
         """Returns this scenario with other values of some keys.
 
         Args:
-            values: from the path of a key, ``"material.yield_stress"`` or ``"loading.steps[0].displacement"``, to its
-                value: a str with a unit, a float in SI units, a bool, a list or a dict.
+            values: mapping from the path of a key, such as ``"material.yield_stress"`` or
+                ``"loading.steps[0].displacement"``, to its value: a str with a unit, a float in SI units, a bool, a
+                list or a dict.
 
         Raises:
             ScenarioError: with every fault of the new scenario.
@@ -79,7 +80,7 @@ class Scenario:
 
     @property
     def title(self) -> str:
-        """Title that the scenario gives itself; empty if it gives none."""
+        """Title in the scenario; empty if it has none."""
         return self._core.title
 
     @property
@@ -94,34 +95,34 @@ class Scenario:
 
     @property
     def origin(self) -> str:
-        """Name of the file, as it was given."""
+        """Name of the file, as given to the constructor or to ``load``."""
         return self._core.origin
 
     @property
     def overrides(self) -> list[str]:
-        """``key=value`` texts of the values that were replaced, in their order."""
+        """Values that were replaced, as ``key=value`` texts in the order of the replacements."""
         return self._core.overrides
 
     def run(self, *, check: bool = True) -> Run:
-        """Runs the scenario. Other threads go on meanwhile.
+        """Runs the scenario. Other threads continue during the run.
 
         Args:
-            check: whether a solver that gives up is an error. If not, the run's status is ``"failed"``.
+            check: True to raise an error if the solver gives up. If False, the status of the run is then ``"failed"``.
 
         Raises:
-            SolverError: with the run up to there, where the solver gave up and ``check`` is true.
-            ScenarioError: where the programs of the walls do not go together.
+            SolverError: if the solver gives up and ``check`` is True; the error has the run up to there.
+            ScenarioError: if the programs of the walls are inconsistent.
         """
         return checked(Run(self._core.run(), lambda: self), check)
 
     def prepare(self, keys: Iterable[str]) -> Prepared:
-        """Prepares many runs that differ in some numbers: the scenario's text is read once.
+        """Prepares many runs with different values of some keys; the scenario's text is read once.
 
         Args:
-            keys: paths of keys of numbers, such as ``"material.yield_stress"``.
+            keys: paths of keys whose values are numbers, such as ``"material.yield_stress"``.
 
         Raises:
-            ScenarioError: where the scenario has no such key, or the key takes no number.
+            ScenarioError: if the scenario lacks a key, or a key takes no number.
         """
         from .prepared import Prepared
 
@@ -139,7 +140,7 @@ class Scenario:
         return hash(self._identity())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Files that the scenario names are found from any folder.
+        # The absolute path of the origin lets another process find the files that the scenario names.
         return (_restored, self._identity())
 
     def __repr__(self) -> str:
@@ -190,7 +191,7 @@ class Run:
 
     @property
     def history(self) -> Table:
-        """Curves: a row at every output point, and just before and after every event."""
+        """Curves: a row at every output point, and rows just before and just after every event."""
         return self._history
 
     @property
@@ -210,7 +211,7 @@ class Run:
 
     @property
     def info(self) -> dict[str, Any]:
-        """Record of the run, as ``run.json`` holds it: status, contact classes, integrator, statistics, timings, versions, scenario."""
+        """Content of ``run.json``: status, contact classes, integrator, statistics, timings, versions, scenario."""
         content: dict[str, Any] = json.loads(self._core.json())
         return content
 
@@ -228,23 +229,23 @@ class Run:
         """Returns a copy of the history as a ``pandas.DataFrame``.
 
         Raises:
-            ImportError: without pandas.
+            ImportError: if pandas is not installed.
         """
         return self._history.to_pandas()
 
     def plot(self) -> matplotlib.figure.Figure:
         """Draws force, mean pressure, contact area and apparent radius over the displacement of the driven wall.
 
-        Loading is solid, unloading dashed, reloading dotted; circles are events. Of a model without walls, its own
-        quantities are drawn over the one that it is driven through. Quantities are dimensionless where the run tells
-        the scales.
+        Loading is solid, unloading dashed, reloading dotted; circles are events. A packing is drawn over its packing
+        fraction, a material point over its axial strain. Quantities are dimensionless if the header of the history has
+        their scales.
 
         Returns:
-            A ``matplotlib.figure.Figure`` that pyplot does not know; save it with its method ``savefig``.
+            A ``matplotlib.figure.Figure`` that pyplot does not manage; save it with its method ``savefig``.
 
         Raises:
-            ImportError: without matplotlib.
-            ValueError: where there is no curve to draw.
+            ImportError: if matplotlib is not installed.
+            ValueError: if there is no curve to draw.
         """
         from . import _figure
 
@@ -254,27 +255,25 @@ class Run:
         """Writes ``history.csv``, ``events.csv`` and ``run.json`` as ``monograin run -o`` does, all of them or none.
 
         Args:
-            folder: is made if it does not exist. Files of an earlier run in it are replaced, others stay.
+            folder: folder for the files, made if it does not exist. Files of an earlier run are replaced; others stay.
 
         Raises:
-            RuntimeError: naming what could not be written, or a folder that holds files but no run.
+            RuntimeError: if a file cannot be written, or the folder holds files but no run.
         """
         self._core.save(os.fspath(folder))
 
     def profile(self, time: float) -> Table:
-        """Returns pressure and surface under the contacts at one instant. Runs the scenario again up to there.
+        """Returns pressure and surface under the contacts at one instant, and runs the scenario again up to it.
 
         Args:
             time: instant [s] within the run.
 
         Returns:
-            Columns ``class``, ``radius`` [m], ``pressure`` [Pa], ``displacement`` [m] of the surface and
-            ``relaxed_height`` [m] of the unloaded surface: a row for each contact class and point, none of open
-            contacts.
+            Table with columns ``class``, ``radius`` [m], ``pressure`` [Pa], ``displacement`` [m] of the surface and
+            ``relaxed_height`` [m] of the unloaded surface; a row for each point of each closed contact class.
 
         Raises:
-            RuntimeError: where the model has no profile, the run does not come to that instant, or no contact is closed
-                then.
+            RuntimeError: if the model has no profile, the run ends before the instant, or no contact is closed then.
         """
         return Table(self.scenario._core.profile(time))
 

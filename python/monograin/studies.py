@@ -18,47 +18,48 @@ from .tables import Table
 def sweep(
     file: Path, folder: Optional[Path] = None, *, threads: int = 0, shard: tuple[int, int] = (1, 1)
 ) -> Optional[Table]:
-    """Runs a sweep file, as ``monograin sweep`` does: on all cores, and on from where it was stopped.
+    """Runs the sweep of a file on several threads, as ``monograin sweep`` does. Runs already in the folder are kept.
 
     Args:
         file: a sweep file (TOML).
-        folder: of the results; ``runs/NAME`` if None.
-        threads: 0 for one for each core.
-        shard: (i, n) for every n-th run only, from the i-th on. The last of n processes with one folder merges.
+        folder: folder of the results; ``runs/NAME`` if None.
+        threads: number of threads; 0: one for each core.
+        shard: (i, n) to do only every n-th run, from the i-th on. The last of n processes that share a folder merges
+            the results.
 
     Returns:
-        The results: a row for each run with its keys, ``status``, ``reason``, and the final (``end.axial.force``) and
-        largest (``max.axial.force``) value of every column. None where runs are left to other shards. The table is
-        ``results.csv`` in the folder; percentiles of the histories, where the file has ``[bands]``, are ``bands.csv``.
+        A row for each run with its keys, ``status``, ``reason``, and the final (``end.axial.force``) and largest
+        (``max.axial.force``) value of every column. None if runs of other shards are missing. The table is
+        ``results.csv`` in the folder. If the file has ``[bands]``, percentiles of the histories are ``bands.csv``.
 
     Raises:
         ScenarioError: with every fault of the sweep and its scenario.
-        RuntimeError: where the folder holds something else or cannot be written.
-        KeyboardInterrupt: on Ctrl-C. Finished runs are kept in the folder, and the next call goes on from there.
+        RuntimeError: if the folder holds other files or cannot be written.
+        KeyboardInterrupt: on Ctrl-C. Complete runs stay in the folder, and the next call does the others.
     """
     where, missing = _core.sweep(os.fspath(file), "" if folder is None else os.fspath(folder), threads, *shard)
     return Table.read_csv(os.path.join(where, "results.csv")) if missing == 0 else None
 
 
 def sensitivity(file: Path, folder: Optional[Path] = None, *, threads: int = 0, confidence: float = 0.95) -> Table:
-    """Says which key the spread of results is due to, as ``monograin sensitivity`` does.
+    """Computes how much each key contributes to the spread of results, as ``monograin sensitivity`` does.
 
     Args:
-        file: a sweep file (TOML) of design ``saltelli`` or ``morris``, with the ``results`` that are asked for.
-        folder: of the results; ``runs/NAME`` if None. Runs that are there are not done again.
-        threads: 0 for one for each core.
+        file: a sweep file (TOML) of design ``saltelli`` or ``morris``, with formulas of ``results``.
+        folder: folder of the results; ``runs/NAME`` if None. Runs already in it are not repeated.
+        threads: number of threads; 0: one for each core.
         confidence: level of the two-sided bootstrap intervals, between 0 and 1.
 
     Returns:
-        A row for each result and key. Of ``saltelli`` the shares of the variance ``first`` and ``total`` with the ends of
-        their intervals (Saltelli et al., 2010; Jansen, 1999); of ``morris`` ``mean_size``, ``mean`` and
-        ``standard_deviation`` of the elementary effects over the whole range of a key (Morris, 1991). The table is
-        ``sensitivity.csv`` in the folder, beside its figure.
+        A row for each result and key. Design ``saltelli`` gives the shares of the variance ``first`` and ``total`` with
+        the ends of their intervals (Saltelli et al., 2010; Jansen, 1999). Design ``morris`` gives ``mean_size``,
+        ``mean`` and ``standard_deviation`` of the elementary effects over the whole range of a key (Morris, 1991). The
+        table is ``sensitivity.csv`` in the folder, beside its figure.
 
     Raises:
         ScenarioError: with every fault of the sweep and its scenario.
         ValueError: for another design, or a confidence outside of (0, 1).
-        RuntimeError: for a formula that the columns of the results cannot answer.
+        RuntimeError: for a formula that cannot be evaluated with the columns of the results.
     """
     if not 0.0 < confidence < 1.0:
         raise ValueError("confidence: expected a number in (0, 1)")
@@ -67,16 +68,16 @@ def sensitivity(file: Path, folder: Optional[Path] = None, *, threads: int = 0, 
 
 
 class FittedParameter(NamedTuple):
-    """A number of a scenario that was fitted; all in SI units.
+    """A fitted parameter of a scenario, in SI units.
 
     Attributes:
-        value: of the best fit.
-        standard_error: of the linearised fit; nan where the data do not tell it.
-        interval: two-sided, at the level of the calibration: of the covariance, the profile or the bootstrap,
-            as ``[fit] intervals`` has it; need not be symmetric, and may end at a bound.
-        bounds: between which the value was sought.
-        at_bound: ``"lower"`` or ``"upper"`` where the value sits at a bound, else None.
-        is_determined: whether the data tell the value.
+        value: value of the best fit.
+        standard_error: standard error of the linearised fit; nan if the data do not determine the value.
+        interval: two-sided confidence interval, from the covariance, the profile or the bootstrap, as chosen by
+            ``[fit] intervals``. It may be asymmetric, and may end at a bound.
+        bounds: bounds of the search.
+        at_bound: ``"lower"`` or ``"upper"`` if the value is at a bound, else None.
+        is_determined: True if the data determine the value.
     """
 
     value: float
@@ -88,7 +89,7 @@ class FittedParameter(NamedTuple):
 
 
 class Calibration:
-    """Result of a calibration: fitted numbers, their uncertainty, and the fit itself."""
+    """Result of a calibration: fitted parameters, their uncertainty, and the fit itself."""
 
     def __init__(self, core: _core.Fitted) -> None:
         self._core = core
@@ -96,7 +97,7 @@ class Calibration:
 
     @property
     def parameters(self) -> dict[str, FittedParameter]:
-        """The fitted numbers, by their keys."""
+        """The fitted parameters, by their keys."""
         return {
             entry["key"]: FittedParameter(
                 entry["value"],
@@ -116,7 +117,7 @@ class Calibration:
 
     @property
     def covariance(self) -> NDArray[np.float64]:
-        """Covariance matrix of the parameters in SI units, shape (p, p); nan for those the data do not tell."""
+        """Covariance matrix of the parameters in SI units, shape (p, p); nan for parameters that are not determined."""
         return _matrix(self._info["covariance"])
 
     @property
@@ -136,17 +137,17 @@ class Calibration:
 
     @property
     def warnings(self) -> list[str]:
-        """Why the fit is not to be trusted, with the likely cause; empty where it is good."""
+        """Reasons not to trust the fit, with the likely causes; empty for a good fit."""
         return self._core.warnings
 
     @property
     def scenario_text(self) -> str:
-        """The scenario with the fitted numbers, as TOML text."""
+        """The scenario with the fitted parameters, as TOML text."""
         return self._core.scenario_text
 
     @property
     def info(self) -> dict[str, Any]:
-        """Record of the calibration, as ``calibration.json`` holds it: parameters, statistics, minima, data."""
+        """Content of ``calibration.json``: parameters, statistics, minima, data."""
         return self._info
 
     def __str__(self) -> str:
@@ -157,18 +158,18 @@ class Calibration:
 
 
 def calibrate(file: Path, folder: Optional[Path] = None, *, confidence: Optional[float] = None) -> Calibration:
-    """Fits numbers of a scenario to measured data, as ``monograin calibrate`` does.
+    """Fits parameters of a scenario to measured data, as ``monograin calibrate`` does.
 
-    A bad fit is warned of (RuntimeWarning), as is a figure that could not be drawn.
+    A bad fit, and a figure that cannot be drawn, give a ``RuntimeWarning``.
 
     Args:
         file: a calibration file (TOML).
-        folder: for the files of the program; None: none are written.
-        confidence: level of the intervals in (0, 1); None: that of the file, or 0.95.
+        folder: folder for the files that the program writes; None: none are written.
+        confidence: level of the intervals in (0, 1); None: the level of the file, or 0.95.
 
     Raises:
         ScenarioError: with every fault of calibration, scenario and data.
-        KeyboardInterrupt: on Ctrl-C; nothing has been written then.
+        KeyboardInterrupt: on Ctrl-C; no file is written then.
     """
     level = float("nan") if confidence is None else confidence
     core = _core.calibrate(os.fspath(file), "" if folder is None else os.fspath(folder), level)
@@ -180,17 +181,18 @@ def calibrate(file: Path, folder: Optional[Path] = None, *, confidence: Optional
 
 
 class ExpectedErrors(NamedTuple):
-    """Errors to expect of one fit to the measurements of several programs of loads; all in SI units.
+    """Expected errors of one fit to the measurements of several programs, in SI units.
 
     Attributes:
-        standard_errors: of every parameter, by its key; nan where the measurements do not determine it.
-        covariance: matrix of the parameters, shape (p, p), in the order of ``standard_errors``; nan as there.
-        correlation: matrix of the parameters, shape (p, p), as ``covariance``.
-        volume: D-criterion: volume of the confidence ellipsoid over that of the planned programs alone; 1 for these, nan
-            where theirs is infinite.
-        relative_variances: A-criterion: sum of the variances of the parameters, each over its value squared; inf where one
-            is not determined.
-        log_determinant: natural logarithm of the determinant of the relative covariance; inf where a parameter is not
+        standard_errors: standard error of every parameter, by its key; nan if the measurements do not determine it.
+        covariance: covariance matrix, shape (p, p), in the order of ``standard_errors``; nan for parameters that are
+            not determined.
+        correlation: correlation matrix, shape (p, p), in the order of ``standard_errors``.
+        volume: D-criterion: volume of the confidence ellipsoid over that of the planned programs alone; 1 for the
+            planned programs, nan if their volume is infinite.
+        relative_variances: A-criterion: sum of the variances of the parameters, each over its value squared; inf if a
+            parameter is not determined.
+        log_determinant: natural logarithm of the determinant of the relative covariance; inf if a parameter is not
             determined.
     """
 
@@ -203,12 +205,12 @@ class ExpectedErrors(NamedTuple):
 
     @property
     def is_determined(self) -> dict[str, bool]:
-        """Whether the measurements determine a parameter, by its key."""
+        """True for each parameter that the measurements determine, by its key."""
         return {key: bool(np.isfinite(error)) for key, error in self.standard_errors.items()}
 
 
 class Design:
-    """Errors of parameters to expect of a planned experiment, alone and with each further program of loads."""
+    """Expected errors of the parameters from a planned experiment, alone and with each candidate program."""
 
     def __init__(self, core: _core.Designed) -> None:
         self._core = core
@@ -216,13 +218,13 @@ class Design:
 
     @property
     def values(self) -> dict[str, float]:
-        """Values of the parameters that are taken as true, by key, in SI units."""
+        """Values of the parameters that the plan assumes as true, by key, in SI units."""
         count = len(self._table) // (len(self._core.candidates) + self._core.has_planned)
         return dict(zip(self._table["key"][:count].tolist(), self._table["value"][:count].tolist()))
 
     @property
     def planned(self) -> Optional[ExpectedErrors]:
-        """Errors with the planned programs alone; None where no program is planned and no prior tells a parameter."""
+        """Errors with the planned programs alone; None if no program is planned and no parameter has a prior."""
         return self._errors(0) if self._core.has_planned else None
 
     @property
@@ -233,12 +235,12 @@ class Design:
 
     @property
     def best_by_volume(self) -> Optional[str]:
-        """Name of the D-optimal candidate, which has the least volume; None where none determines all parameters."""
+        """Name of the D-optimal candidate, with the least volume; None if no candidate determines all parameters."""
         return self._core.best_by_volume
 
     @property
     def best_by_variances(self) -> Optional[str]:
-        """Name of the A-optimal candidate, which has the least sum of relative variances; None as above."""
+        """Name of the A-optimal candidate, with the least sum of relative variances; None as in ``best_by_volume``."""
         return self._core.best_by_variances
 
     @property
@@ -271,20 +273,20 @@ class Design:
 
 
 def design(file: Path, folder: Optional[Path] = None) -> Design:
-    """Says which errors of parameters to expect of a planned experiment, as ``monograin design`` does.
+    """Computes the expected errors of the parameters from a planned experiment, as ``monograin design`` does.
 
-    The errors are those of a fit whose law is right, nearly linear within the errors, and whose noise is known: the
-    covariance is the inverse of the Fisher information (Fedorov, 1972). A figure that could not be drawn is warned of
-    (RuntimeWarning).
+    The covariance is the inverse of the Fisher information (Fedorov, 1972). This assumes that the law is right and
+    nearly linear within the errors, and that the noise is known. A figure that cannot be drawn gives a
+    ``RuntimeWarning``.
 
     Args:
-        file: a plan (TOML): scenario, free parameters, programs of loads with their noise.
-        folder: for the files of the program; None: none are written.
+        file: a plan (TOML): scenario, free parameters, programs with the noise of their measurements.
+        folder: folder for the files that the program writes; None: none are written.
 
     Raises:
-        ScenarioError: with every fault of plan and scenario, or where the noise of a measured row is zero.
-        RuntimeError: where the folder holds something else or cannot be written.
-        KeyboardInterrupt: on Ctrl-C; nothing has been written then.
+        ScenarioError: with every fault of plan and scenario, or if the noise of a measured row is zero.
+        RuntimeError: if the folder holds other files or cannot be written.
+        KeyboardInterrupt: on Ctrl-C; no file is written then.
     """
     core = _core.design(os.fspath(file), "" if folder is None else os.fspath(folder))
     if core.no_figure:
@@ -293,16 +295,16 @@ def design(file: Path, folder: Optional[Path] = None) -> Design:
 
 
 class CurveDifference(NamedTuple):
-    """How far a column of one table is from that of a reference.
+    """Error measures of a column against the same column of a reference.
 
     Attributes:
         y: heading of the column.
         linf: largest difference over the largest magnitude of the reference.
-        linf_at: x of that difference.
-        l2: root of the integral of the squared difference over x, relative to that of the reference.
+        linf_at: x of the largest difference.
+        l2: root of the integral of the squared difference over x, over the same root for the reference itself.
         area_error: root of the integral of the squared difference over x, over the integral of the magnitude of the
             reference (Edmans and Sinka, eq. 7).
-        peak_error: largest difference over the reference at its largest x (Edmans and Sinka, eq. 8).
+        peak_error: largest difference over the magnitude of the reference at its largest x (Edmans and Sinka, eq. 8).
         coverage: share of the reference's path on which the tables could be compared.
     """
 
@@ -316,11 +318,11 @@ class CurveDifference(NamedTuple):
 
 
 class Gap(NamedTuple):
-    """A column of the reference that could not be compared in full.
+    """A column of the reference that could not be compared, or whose words differ.
 
     Attributes:
-        column: its name.
-        problem: goes on from the name: ``"is missing"``.
+        column: heading of the column.
+        problem: continues a sentence that begins with the heading: ``"is missing"``.
     """
 
     column: str
@@ -331,8 +333,8 @@ class Comparison(NamedTuple):
     """Differences of two tables.
 
     Attributes:
-        curves: one :class:`CurveDifference` for each column of numbers that both have.
-        gaps: columns that are missing or not covered.
+        curves: one :class:`CurveDifference` for each column of numbers that both tables have.
+        gaps: columns that are missing, not covered, or whose words differ.
     """
 
     curves: list[CurveDifference]
@@ -343,13 +345,14 @@ def compare(a: Union[Run, Table, Path], b: Union[Run, Table, Path], *, x: str = 
     """Compares b with the reference a, as ``monograin compare`` does.
 
     Args:
-        a: reference: a run, a table, the folder of a run, or a CSV file.
-        b: what is compared with it.
-        x: column to compare over.
-        y: column to compare; empty: every column, and of two runs their events.
+        a: the reference: a run, a table, the folder of a run, or a CSV file.
+        b: the run, table, folder or file that is compared with the reference.
+        x: name of the column for the abscissa; empty: the first column.
+        y: name of the column to compare; empty: every column, and the events if both are runs or their folders.
 
     Raises:
-        RuntimeError: where the reference lacks a column that was named, or the curves have no common range.
+        RuntimeError: if the reference lacks a column that was named, or a file cannot be read. Curves without a common
+            range are no error but a gap.
     """
     curves, gaps = _core.compare_tables(_history(a)._core, _history(b)._core, x, y)
     events_a, events_b = _events(a), _events(b)

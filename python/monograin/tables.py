@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 class Table:
     """Rows of numbers and words under named columns.
 
-    ``table["axial.force"]`` is a column. ``len(table)`` is the number of rows. Iteration goes over the rows, each a dict
+    ``table["axial.force"]`` is a column. ``len(table)`` is the number of rows. Iteration yields the rows, each a dict
     from the name of a column to its value.
 
-    A column of numbers is a read-only view of the table's own memory: it is not copied, and it stays valid when the
-    table is gone. Undefined values are nan. A column of words is an array of str.
+    A column of numbers is a read-only view of the table's memory: nothing is copied, and the view stays valid after the
+    table is deleted. Undefined values are nan. A column of words is an array of str.
     """
 
     def __init__(self, core: _core.Table) -> None:
@@ -33,23 +33,23 @@ class Table:
         """Reads a CSV file, such as the ``history.csv`` of a run.
 
         Raises:
-            RuntimeError: naming the place in the file, where it is no table.
+            RuntimeError: if the file is not a table; the message has the position of the fault.
         """
         return cls(_core.read_csv(os.fspath(file)))
 
     @property
     def columns(self) -> list[str]:
-        """Names of the columns, in their order."""
+        """Names of the columns, without units, in their order."""
         return self._core.columns
 
     @property
     def units(self) -> dict[str, str]:
-        """Unit of every column: SI, ``"-"`` for a pure number, empty for words and counts."""
+        """Unit of every column by its name: SI, ``"-"`` for a pure number, empty for words and counters."""
         return self._core.units
 
     @property
     def header(self) -> dict[str, str]:
-        """Lines above the table: what made it, and for which material."""
+        """Header lines ``key: value`` of the table, such as program, scenario, model and material."""
         return dict(self._core.header)
 
     def __len__(self) -> int:
@@ -62,10 +62,10 @@ class Table:
         """Returns a column, by its name (``"axial.force"``) or heading (``"axial.force[N]"``).
 
         Returns:
-            Array of shape (rows,) in SI units.
+            Array of shape (rows,): numbers in SI units, or words.
 
         Raises:
-            KeyError: naming the nearest column, where there is none of that name.
+            KeyError: for an unknown name; the message suggests the nearest column.
         """
         if column not in self._words:
             values = self._core.values(column)
@@ -81,10 +81,10 @@ class Table:
         return (dict(zip(names, row)) for row in zip(*values))
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Returns a copy as a ``pandas.DataFrame``, with one column for each of the table's.
+        """Returns a copy as a ``pandas.DataFrame`` with the same columns.
 
         Raises:
-            ImportError: without pandas.
+            ImportError: if pandas is not installed.
         """
         import pandas
 

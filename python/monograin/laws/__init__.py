@@ -1,11 +1,10 @@
 """Contact laws in closed form.
 
-Every function takes numbers or arrays, which broadcast as in numpy, and returns a float or an array. Where a law has no
-value, because it ends before, the result is nan. Parameters that no law has, such as a negative yield stress, raise
-``ValueError``.
+Every function takes numbers or arrays, which broadcast as in numpy, and returns a float or an array. Outside the domain
+of a law the result is nan. Inadmissible parameters, such as a negative yield stress, raise ``ValueError``.
 
 - :mod:`monograin.laws.hertz`: an elastic sphere at a rigid wall
-- :mod:`monograin.laws.curved_sphere`: that with the curvature of the sphere's profile
+- :mod:`monograin.laws.curved_sphere`: an elastic sphere at a rigid wall, with the curvature of the sphere's profile
 - :mod:`monograin.laws.line_contact`: an elastic cylinder between two walls
 - :mod:`monograin.laws.mdr`: elastic, adhesive and fully plastic contacts of the method of dimensionality reduction
 - :mod:`monograin.laws.similarity`: a rigid-plastic sphere that hardens by a power law, small contacts

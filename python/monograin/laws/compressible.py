@@ -63,7 +63,7 @@ def unloading_force(
         stiffness, transition, exponent: of first loading, as in :func:`loading_force`.
         hertz_stiffness: k_H, above 0; see :func:`hertz_stiffness`.
         largest: dm, above 0.
-        displacement: d; from d0 down, where the contact is open, the force is 0.
+        displacement: d; the contact is open and the force 0 at d0 and below.
         unloading_exponent: alpha, 1 or above.
         stiffness_ratio: beta, above 0: secant stiffness of the unloading over that of Hertz (eq. 11).
     """
@@ -86,8 +86,8 @@ def stiffness(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
     """Returns the stiffness k of the loading law by the source's regression (eq. A.1, one coefficient corrected).
 
     Args:
-        modulus_ratio: E0/sigma_y0; the source has 3 to 500. This is not checked.
-        shear_ratio: Gamma0/sigma_y0; the source has 0.25 to 1. This is not checked.
+        modulus_ratio: E0/sigma_y0; 3 to 500 in the source, not checked.
+        shear_ratio: Gamma0/sigma_y0; 0.25 to 1 in the source, not checked.
     """
     return _core.laws.compressible_stiffness(modulus_ratio, shear_ratio)
 

@@ -1,8 +1,8 @@
 """Elastic sphere at a rigid flat wall with the curvature of the sphere's profile: Hertz's law and its next terms.
 
-The profile is a series in the distance from the axis. Its first term, the parabola, gives Hertz's law; four terms are
-those of the source, and ``"inf"`` is the sphere itself. Every contact stands alone here: other walls do not move its
-surface.
+The profile is a series in the distance from the axis. Its first term, the parabola, gives Hertz's law; the source takes
+four terms, and ``"inf"`` is the sphere itself. Contacts are independent: other walls do not move the surface under a
+contact.
 
 Source: Agarwal and Gonzalez, section 4 and appendix B.
 """
@@ -25,7 +25,7 @@ def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: s
         modulus: composite modulus E* = E/(1 - nu^2) [Pa], above 0.
         radius: R [m], above 0.
         overlap: delta [m].
-        terms: how many terms of the profile count: ``"1"`` (Hertz) to ``"4"``, or ``"inf"``.
+        terms: number of terms of the profile, ``"1"`` (Hertz) to ``"4"``, or ``"inf"``.
     """
     return _core.laws.curved_sphere("force", terms, modulus, radius, overlap)
 

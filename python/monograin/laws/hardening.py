@@ -1,7 +1,7 @@
 """Law of a rigid-plastic sphere that hardens by a power law, sigma = kappa epsilon^mu, between rigid flat walls.
 
 Monotonic loading. The particle is incompressible: in a die or under hydrostatic compression the pressure grows without
-bound as it fills its cell, and results are nan from there on. ``exponent`` is mu in [0, 1].
+bound as the particle fills its cell, and results are nan beyond. ``exponent`` is mu in [0, 1].
 
 Source: Shahin (2021), chapter 3.
 """
@@ -32,11 +32,11 @@ def force(
         exponent: mu, in [0, 1].
         radius: R [m], above 0.
         displacement: of the wall [m]; 0 or less gives 0.
-        configuration: ``"simple"`` (two opposite walls), ``"die"`` (and four fixed ones beside the particle) or
-            ``"hydrostatic"`` (six walls that move alike).
+        configuration: ``"simple"`` (two opposite walls), ``"die"`` (two opposite walls and four fixed lateral ones) or
+            ``"hydrostatic"`` (six walls with equal displacements).
 
     Raises:
-        ValueError: for an exponent outside of [0, 1], or a configuration of another name.
+        ValueError: for an exponent outside of [0, 1], or an unknown configuration.
     """
     return _core.laws.hardening("force", configuration, strength, exponent, radius, displacement)
 

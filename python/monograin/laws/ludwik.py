@@ -32,7 +32,7 @@ class PowerLaw(NamedTuple):
     Attributes:
         strength: kappa [Pa].
         exponent: mu.
-        residual: root of the mean square of the difference to Ludwik's stress [Pa].
+        residual: root mean square difference to Ludwik's stress [Pa].
     """
 
     strength: float
@@ -57,9 +57,9 @@ def power_law(
         strength: K [Pa], 0 or above.
         exponent: 1/n, in (0, 1].
         largest_strain: end of the range of total strains, above 0.
-        fit: ``"both"`` for strength and exponent, ``"exponent"`` for the exponent alone with the strength Y + K.
+        fit: ``"both"`` fits strength and exponent; ``"exponent"`` fits the exponent, with the strength Y + K.
 
     Raises:
-        ValueError: for a material out of these ranges, and where the best exponent is not in [0, 1].
+        ValueError: for a material outside of these ranges, or if the best exponent is not in [0, 1].
     """
     return PowerLaw(*_core.laws.ludwik_power_law(youngs_modulus, yield_stress, strength, exponent, largest_strain, fit))

@@ -1,6 +1,6 @@
 """Contacts of an elastic-perfectly plastic, adhesive particle by the method of dimensionality reduction.
 
-The functions are those of one contact at a given apparent radius; how the radius grows is what a run computes.
+The functions describe one contact at a given apparent radius. Only a run computes how the apparent radius grows.
 
 Source: Zunker and Kamrin, Part I, doi:10.1016/j.jmps.2023.105492.
 """
@@ -36,7 +36,7 @@ def elastic_force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, 
         modulus: composite modulus E* = E/(1 - nu^2) [Pa], above 0.
         radius: apparent radius R [m], above 0.
         overlap: delta [m]; 0 or less gives 0, more than 2 R nan.
-        profile: ``"ellipse"``, the source's, or ``"parabola"``, Hertz's.
+        profile: ``"ellipse"``, as in the source, or ``"parabola"``, which gives Hertz's law.
     """
     return _core.laws.mdr_elastic("force", profile, modulus, radius, overlap)
 
@@ -129,13 +129,13 @@ def pull_off_force(
     control: str = "force",
     profile: str = "ellipse",
 ) -> Any:
-    """Returns the force at which an elastic adhesive contact is torn off [N], negative (eqs. 11, 15).
+    """Returns the pull-off force of an elastic adhesive contact [N], which is negative (eqs. 11, 15).
 
     Args:
         modulus: composite modulus E* [Pa], above 0.
         radius: apparent radius R [m], above 0.
         surface_energy: effective surface energy of particle and wall [J/m^2], above 0.
-        control: what is prescribed, ``"force"`` or ``"displacement"``.
+        control: controlled quantity at pull-off, ``"force"`` or ``"displacement"``.
         profile: ``"ellipse"`` or ``"parabola"``. The parabola gives -(3/2) pi R times the surface energy under force
             control, as Johnson, Kendall and Roberts (1971) do.
     """
@@ -150,7 +150,7 @@ def pull_off_radius(
     control: str = "force",
     profile: str = "ellipse",
 ) -> Any:
-    """Returns the contact radius at which an elastic adhesive contact is torn off [m] (eq. 15).
+    """Returns the contact radius of an elastic adhesive contact at pull-off [m] (eq. 15).
 
     Args:
         modulus, radius, surface_energy, control, profile: as in :func:`pull_off_force`.

@@ -1,6 +1,6 @@
-"""Compaction of a packing of soft discs, from jamming to no pores left.
+"""Compaction of a packing of soft discs, from jamming until all pores are closed.
 
-The parameters of the packing are the published ones. Without ``yield_stress`` the discs stay elastic. Results are nan
+The constants of the packing are those of the source. Without ``yield_stress`` the discs are elastic. Results are nan
 below jamming.
 
 Source: Nezamabadi et al., doi:10.1007/s40571-021-00391-4.

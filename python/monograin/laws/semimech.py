@@ -1,7 +1,7 @@
 """Semi-mechanistic law of an elastic-ideally plastic sphere between rigid flat walls.
 
-Monotonic loading from first touch to a particle that fills its cell: elastic, elastic-plastic, fully plastic, and in a
-die or under hydrostatic compression low-compressibility and elastic-volumetric.
+Monotonic loading from first touch until the particle fills its cell. The regimes are elastic, elastic-plastic and fully
+plastic; in a die or under hydrostatic compression also low-compressibility and elastic-volumetric.
 
 Source: Shahin (2021), chapter 2.
 """
@@ -34,11 +34,11 @@ def force(
         yield_stress: Y [Pa], above 0; E/((1 - nu^2) Y) at least 22.1.
         radius: R [m], above 0.
         displacement: of the wall [m]; 0 or less gives 0, R or more nan.
-        configuration: ``"simple"`` (two opposite walls), ``"die"`` (and four fixed ones beside the particle) or
-            ``"hydrostatic"`` (six walls that move alike).
+        configuration: ``"simple"`` (two opposite walls), ``"die"`` (two opposite walls and four fixed lateral ones) or
+            ``"hydrostatic"`` (six walls with equal displacements).
 
     Raises:
-        ValueError: for a material outside of these ranges, or a configuration of another name.
+        ValueError: for a material outside of these ranges, or an unknown configuration.
     """
     return _core.laws.semimech("force", configuration, youngs_modulus, poisson_ratio, yield_stress, radius, displacement)
 

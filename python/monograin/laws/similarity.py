@@ -36,8 +36,8 @@ def force(
         exponent: mu, in [0, 1].
         radius: R [m], above 0.
         displacement: of the wall [m]; 0 or less gives 0, R or more nan.
-        rule: how the contact radius follows from the approach: ``"parabolic"`` (eq. 2.5), or ``"corrected"`` with the
-            fourth power of the profile (eq. B.24).
+        rule: relation of contact radius and approach: ``"parabolic"`` (eq. 2.5), or ``"corrected"`` with the fourth
+            power of the profile (eq. B.24).
     """
     return _core.laws.similarity("force", rule, strength, exponent, radius, displacement)
 
@@ -79,7 +79,7 @@ def pair_strength(first: ArrayLike, second: ArrayLike, exponent: ArrayLike) -> A
     """Returns the strength of two materials in contact, (kappa_1^(-m) + kappa_2^(-m))^(-1/m) [Pa] (eq. 2.6).
 
     Args:
-        first, second: strengths kappa_1 and kappa_2 [Pa], above 0; one may be inf, of a rigid body.
+        first, second: strengths kappa_1 and kappa_2 [Pa], above 0; one may be inf, for a rigid body.
         exponent: mu = 1/m of both, in [0, 1].
     """
     return _core.laws.similarity_strength(first, second, exponent)
@@ -97,10 +97,10 @@ def pair_force(
     """Returns the force of two spheres in contact [N] (eqs. 2.4, 2.8).
 
     Args:
-        strength: of the pair [Pa], see :func:`pair_strength`.
+        strength: strength of the pair [Pa], see :func:`pair_strength`.
         exponent: mu, in [0, 1].
-        first_radius, second_radius: [m], above 0; one may be inf, of a flat wall.
-        approach: of the two centres [m]; 0 or less gives 0.
+        first_radius, second_radius: radii of the spheres [m], above 0; one may be inf, for a flat wall.
+        approach: approach of the two centres [m]; 0 or less gives 0.
         rule: as in :func:`force`.
     """
     return _core.laws.similarity_pair("force", rule, strength, exponent, first_radius, second_radius, approach)
@@ -135,7 +135,7 @@ def pair_approach(
 
     Args:
         strength, exponent, first_radius, second_radius, rule: as in :func:`pair_force`.
-        force: [N], 0 or above.
+        force: force between the spheres [N], 0 or above.
     """
     return _core.laws.similarity_pair("approach", rule, strength, exponent, first_radius, second_radius, force)
 
