@@ -11,8 +11,8 @@ class History;
 /// Error measures of curve b against curve a (the reference).
 ///
 /// Integrals are trapezoidal sums over the points of a along its path: a piece in which x decreases counts as much as a
-/// piece in which x increases. A measure whose denominator is zero is not divided: it is then in units of y (linf,
-/// peak_error) or of the integral (l2, area_error).
+/// piece in which x increases. A measure whose denominator is zero is not divided: linf and peak_error are then in
+/// units of y, l2 and area_error in units of the root of the integral.
 struct CurveDifference {
   std::string y;         ///< heading of the compared column; empty where curves were compared
   double linf = 0.0;     ///< max |b - a| / max |a|

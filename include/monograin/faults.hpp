@@ -26,7 +26,7 @@ struct Fault {
 class ScenarioError : public std::runtime_error {
  public:
   explicit ScenarioError(std::vector<Fault> faults);
-  /// All faults, ordered by position if a monograin function threw the error.
+  /// All faults. Functions of monograin order them by position.
   [[nodiscard]] const std::vector<Fault>& faults() const noexcept { return faults_; }
 
  private:

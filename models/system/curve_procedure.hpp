@@ -14,9 +14,9 @@ namespace monograin {
 /// Parameters that a procedure has found, with the error measures of its source.
 struct ProcedureFit {
   std::string procedure;
-  std::vector<double> parameters;  ///< in the order of the procedure's keys
-  double area_error = 0.0;         ///< over displacement/R0
-  double peak_error = 0.0;
+  std::vector<double> parameters;  ///< values in the order of CurveProcedure::keys
+  double area_error = 0.0;         ///< area error as the source defines it, over displacement/R0
+  double peak_error = 0.0;         ///< peak error as the source defines it
 };
 
 /// A curve of forces, over CurveProcedure::force_unit, against displacements over R0.

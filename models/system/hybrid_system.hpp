@@ -155,6 +155,7 @@ class HybridSystem {
   void leave_out_energies() noexcept { has_energies_ = false; }
   [[nodiscard]] bool has_energies() const noexcept { return has_energies_; }
 
+  /// Unknowns in the order of the array y.
   [[nodiscard]] virtual std::span<const Unknown> unknowns() const noexcept = 0;
 
   /// True if some unknowns are dependent: these unknowns and their rates may be singular at the start of a segment.
@@ -223,6 +224,7 @@ class HybridSystem {
 
   /// Guards alive until the next transition or the end of the step, in the order in which they are applied.
   [[nodiscard]] virtual std::span<const Guard> guards() const noexcept = 0;
+  /// Computes the value of every guard, in the order of guards().
   virtual void guard_values(double xi, std::span<const double> y, std::span<double> values) = 0;
 
   /// Applies the transitions of the guards with these indices, resolves the mode, and logs the events. Unknowns that
@@ -231,7 +233,9 @@ class HybridSystem {
   virtual std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                         std::vector<Event>& log) = 0;
 
+  /// Columns of the history that this system computes.
   [[nodiscard]] virtual std::span<const Observable> observables() const noexcept = 0;
+  /// Computes the value of every observable in its unit, in the order of observables(); NaN if it is undefined.
   virtual void observe(double xi, std::span<const double> y, std::span<double> values) = 0;
 
   /// Present value of one quantity of one channel, in SI units.

@@ -37,7 +37,7 @@ enum class Dimension {
   velocity,
   force_rate,
   angle,
-  strain_rate,  ///< of strains and other pure numbers
+  strain_rate,  ///< rate of a strain or of another pure number
   stress_rate
 };
 
@@ -74,7 +74,7 @@ struct QuantityKey {
   bool is_optional = false;
 };
 
-/// A choice, a switch, a file name or a number in the table that bears the model's name.
+/// A choice, a switch, a file name or a number in the table named after the model.
 struct OptionKey {
   enum class Kind { choice, toggle, file, quantity };
   std::string_view name;
@@ -147,12 +147,12 @@ using OptionValue = std::variant<bool, double, std::string>;
 
 /// A scenario as its model sees it. Each value alone is admissible; Model::objections checks them together.
 struct ModelInput {
-  double radius = 0.0;                                ///< R0 [m]; 0 where the model has no particle
+  double radius = 0.0;                                ///< R0 [m]; 0 if the model has no particle
   const std::map<std::string, double>& values;        ///< values of the keys in `[material]` [SI]
   const std::map<std::string, OptionValue>& options;  ///< options by name, defaults filled in
   const std::map<std::string, SampledCurve>& curves;  ///< content of the files, by the option that names the file
-  std::string_view configuration{};                   ///< empty where the model has none
-  bool centre_is_free = false;
+  std::string_view configuration{};                   ///< wall set; empty if the model has none
+  bool centre_is_free = false;         ///< true if the forces on the particle determine the position of its centre
   std::vector<PlannedStep> program{};  ///< program of a model without walls; empty with walls
   std::string_view integrator{};       ///< integrator that the scenario names, before `auto` is resolved
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double k_slope_share = 0.05;    ///< fall of the force that gives the slope, over the force at the reversal
 constexpr double k_same_reversal = 0.01;  ///< largest distance of equal reversals, over their x
-constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< end of loading that gets a line, over x of the last reversal
+constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< least end of loading with a line, over x of the last reversal
 constexpr double k_round_off = 1e-12;          ///< force that counts as zero, over the force at the reversal
 constexpr double k_same_end = 1e-6;            ///< largest distance beyond the end of a piece that has a value, over x
 constexpr std::size_t k_short_way = 2;         ///< longest path between two turns that may be noise, in rows

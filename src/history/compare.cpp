@@ -156,7 +156,7 @@ class PieceReader {
   double reach_;
 };
 
-/// Difference of two recorded values; infinite if only one of them is defined, 0 if both are undefined or equal.
+/// Difference of two recorded values; infinite if only one of them is defined, NaN if none is.
 [[nodiscard]] double recorded_difference(double reference, double other) noexcept {
   if (std::isnan(reference) != std::isnan(other)) return std::numeric_limits<double>::infinity();
   return reference == other ? 0.0 : other - reference;  // equal infinities do not differ

@@ -13,9 +13,10 @@ namespace monograin {
 struct DissipationFall {
   double from = 0.0;    ///< time of the largest dissipation before the fall [s]
   double to = 0.0;      ///< time of the least dissipation after it [s]
-  double amount = 0.0;  ///< by how much the dissipation falls [J], > 0
+  double amount = 0.0;  ///< fall of the dissipation [J], > 0
   double scale = 0.0;   ///< largest magnitude of work and stored energy in the history [J]
 
+  /// The fall over the scale.
   [[nodiscard]] double share() const noexcept { return amount / scale; }
 };
 

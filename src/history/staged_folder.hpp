@@ -18,9 +18,10 @@ inline constexpr std::string_view k_run_marker = "run.json";
 /// `.monograin` in the target has their names and digests. Until publish(), the target does not change.
 ///
 /// publish() changes all files in one step, by an exchange of folders. If the target contains folders, has another
-/// owner, is a file system of its own or contains the working directory, publish() moves the files one by one, the
-/// marker last. The next process for the same target clears up after a killed one: it completes moves that had begun,
-/// and removes other hidden folders. If the target is a link, the link stays and its destination is the target.
+/// owner, is a file system of its own, lies in a folder that cannot be written or contains the working directory,
+/// publish() moves the files one by one, the marker last. The next process for the same target clears up after a killed
+/// one: it completes moves that had begun, and removes other hidden folders. If the target is a link, the link stays
+/// and its destination is the target.
 class StagedFolder {
  public:
   /// Makes the hidden folder. A target that cannot be written is thus reported before anything is computed.

@@ -41,6 +41,7 @@ class Table {
   [[nodiscard]] std::size_t row_count() const noexcept {
     return columns_.empty() ? 0 : values_.size() / columns_.size();
   }
+  /// Values of one row; words are indices into the labels of their column.
   [[nodiscard]] std::span<const double> row(std::size_t index) const;
   [[nodiscard]] double at(std::size_t row, std::size_t column) const { return values_[row * columns_.size() + column]; }
 
