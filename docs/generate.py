@@ -73,24 +73,24 @@ COLUMNS = {
     "apparent_radius": "radius of the sphere whose caps the contacts cut off",
     "volume": "volume of the particle",
     "work": "work of all walls on the particle since the start",
-    "stored_energy": "part of the work that unloading gives back",
-    "dissipation": "part of the work that is lost",
+    "stored_energy": "part of the work that unloading can recover",
+    "dissipation": "part of the work that is dissipated",
     "centre_x": "position of the centre, x",
     "centre_y": "position of the centre, y",
     "centre_z": "position of the centre, z",
     "core_strain": "accumulated equivalent strain of the core",
-    "coverage": "how much of the surface the dents take up; contacts meet at about 1.7",
-    "margin": "distance to the limit of applicability; zero where the run ends",
+    "coverage": "measure of the surface area of all dents; contacts meet at about 1.7",
+    "margin": "distance from the limit of applicability; 1 unloaded, 0 at the limit",
     "packing_fraction": "volume of the particles over that of the packing",
     "strain": "logarithmic strain of the packing, compression positive; zero where the elastic law has no stress",
     "stress": "stress on the packing",
-    "stress_elastic": "stress that the elastic law alone gives",
+    "stress_elastic": "stress of the elastic law alone",
     "coordination_number": "mean number of contacts of a particle",
     "plastic_fraction": "share of contacts that have yielded",
     "strain_axial": "logarithmic axial strain, tension positive",
     "strain_lateral": "logarithmic lateral strain, tension positive",
     "p": "hydrostatic pressure",
-    "s": "axial less lateral stress, with its sign",
+    "s": "axial minus lateral stress, with sign",
     "q": "magnitude of s (von Mises stress)",
     "stress_axial": "axial stress, tension positive",
     "stress_lateral": "lateral stress, tension positive",
@@ -100,16 +100,16 @@ COLUMNS = {
     "phi": "strength variable of the yield surface",
     "youngs_modulus": "Young's modulus at this density",
     "yield_function": "yield function: negative inside the yield surface, zero on it",
-    "regime": "regime, a word of the table above",
+    "regime": "regime, a name of the table above",
 }
 CONTACT_COLUMNS = {
-    "displacement": "travel of the wall from first touch towards the place where the centre started; negative: a gap",
+    "displacement": "displacement of the wall from first touch towards the initial position of the centre; negative: a gap",
     "overlap": "depth of the wall in the particle of the present (apparent) radius",
     "force": "force of one wall, compression positive",
     "contact_radius": "radius of the contact area",
     "contact_radius_deformed": "radius of the contact area with the corrections of the law",
-    "pressure": "force over contact area; 0 where the contact is open",
-    "regime": "regime, a word of the table above",
+    "pressure": "force over contact area; 0 if the contact is open",
+    "regime": "regime, a name of the table above",
 }
 
 
@@ -311,7 +311,7 @@ def write_language(schema):
     text += "\n### `[particle]`\n\n" + key_table(walls["particle"]["properties"], walls["particle"]["required"])
     text += "\n### `[loading]`\n\n" + key_table(keys, ["configuration", "steps"], (), ORDER)
     text += "\n### `[[loading.wall]]`\n\n" + key_table(wall["properties"], wall["required"], (), ORDER)
-    text += "\n### `[[loading.steps]]`\n\nA step has one of these forms, told by its first key.\n"
+    text += "\n### `[[loading.steps]]`\n\nA step has one of these forms, identified by its first key.\n"
     for key, form in steps_of(definitions["mdr-step"]):
         text += f"\n`{key}`\n\n" + key_table(form["properties"], form["required"], (), (key, *ORDER))
     text += "\n### `until`\n\nOne or several conditions; the first that is met ends the step.\n\n"
@@ -458,7 +458,7 @@ def write_models(program, schema, ready):
             page += key_table(material["properties"], required, ("preset",), words_of(sections["[material]"]))
             listed = [line.strip() for line in sections["[material]"] if line.startswith(" " * 29)]
             if listed:
-                page += "\nA `preset` stands for all of these keys; keys beside it win.\n\n"
+                page += "\nA `preset` sets all of these keys; keys given beside it override the preset.\n\n"
                 split = [re.fullmatch(r"(.*) \((.*)\)", item).groups() for item in listed]
                 page += table(["preset", "from"], [[f"`{a}`", b] for a, b in split])
                 presets += [[f"`{a}`", f"[`{name}`](/reference/models/{name}.md)", b] for a, b in split]
@@ -505,7 +505,7 @@ def write_models(program, schema, ready):
         write(f"{name}.md", page, MODEL_PAGES)
     for unused in [*(set(COLUMNS) - used), *(set(CONTACT_COLUMNS) - used_of_contacts)]:
         fail(f"no ready scenario has the column '{unused}', whose meaning this script knows")
-    write("models.md", table(["model", "what it is"], rows))
+    write("models.md", table(["model", "description"], rows))
     write("presets.md", table(["preset", "model", "from"], presets))
     lines = []
     for event in sorted(events_of):
@@ -693,7 +693,7 @@ def write_equal_errors():
     lines = [[row[heading.index(name)] for name in shown] for row in rows]
     write("equal-errors.md",
           f"At errors of 1e-4, 1e-6, 1e-8 and 1e-10 the time of `auto` is at most {usual:.3g} times that of the fastest other "
-          f"method{but}. The time of `cvode-bdf`, the standard code for stiff equations, over that of `auto`:\n\n"
+          f"method{but}. The table gives the time of `cvode-bdf`, the standard code for stiff equations, over that of `auto`:\n\n"
           + table(["scene", "`auto` is", "at 1e-4", "at 1e-8", "at the error of `auto`"], lines))
 
 
