@@ -30,7 +30,7 @@ constexpr std::size_t k_most_cells = 100'000'000;
 // --- writing
 
 [[nodiscard]] bool prints_as_integer(double value) noexcept {
-  constexpr double k_largest = 1e15;  // below, 17 significant digits give the same text without an exponent
+  constexpr double k_largest = 1e15;  // larger integers are written with an exponent
   return std::abs(value) < k_largest && value == std::trunc(value) && !(value == 0.0 && std::signbit(value));
 }
 
@@ -43,9 +43,14 @@ void append_csv_number(std::string& text, double value, int digits) {
   }
   std::array<char, k_longest_number> cell;
   char* const end = cell.data() + cell.size();
-  const auto printed = prints_as_integer(value)
-                           ? std::to_chars(cell.data(), end, static_cast<long long>(value))
-                           : std::to_chars(cell.data(), end, value, std::chars_format::general, digits);
+  std::to_chars_result printed{};
+  if (prints_as_integer(value)) {
+    printed = std::to_chars(cell.data(), end, static_cast<long long>(value));
+  } else if (digits >= k_all_digits) {
+    printed = std::to_chars(cell.data(), end, value);  // the shortest text that restores the value
+  } else {
+    printed = std::to_chars(cell.data(), end, value, std::chars_format::general, digits);
+  }
   text.append(cell.data(), printed.ptr);
 }
 

@@ -73,11 +73,12 @@ inline constexpr int k_all_digits = std::numeric_limits<double>::max_digits10;
 /// Text of a number as write_csv() writes it.
 [[nodiscard]] std::string csv_number(double value);
 /// Appends a number to a text as write_csv() writes it.
-/// @param digits  significant digits; integers below 1e15 are written with all their digits
+/// @param digits  significant digits; with k_all_digits as few of them as restore the value. Integers below 1e15 are
+///                written with all their digits.
 void append_csv_number(std::string& text, double value, int digits = k_all_digits);
 
-/// Writes `# key: value` lines, one row of headings, and the rows with 17 significant digits (`nan` for undefined
-/// values), independent of the locale. read_csv() restores bitwise equal doubles.
+/// Writes `# key: value` lines, one row of headings, and the rows (`nan` for undefined values), independent of the
+/// locale. Numbers have as few digits, at most 17, as read_csv() needs to restore bitwise equal doubles.
 /// Nothing is quoted; a line break in a header line becomes a space.
 /// @throws std::invalid_argument if a heading or a word contains a comma, a quote or a line break
 void write_csv(const Table& table, std::ostream& out);
