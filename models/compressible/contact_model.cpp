@@ -107,7 +107,7 @@ constexpr std::array<string_view, 8> k_domain{
     "no contact radius, no pressure, no shape of the particle",
     "unloading: the source has no law for alpha and beta; a warning where Hertz's 1.5 and 1 stand in for them",
     "unloading ends at first touch or before: where beta would have it beyond, alpha stays and a warning counts it",
-    "reloading: not in the source; elastic on the way of the unloading",
+    "reloading: not in the source; elastic along the unloading curve",
     "warned: dissipation that falls by more than 1e-6 of the energy, where alpha, beta or a soft material make the "
     "unloading softer than the loading",
 };

@@ -122,9 +122,9 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] static double length(const Flow& flow) noexcept;
   [[nodiscard]] Flow flow_to_surface(const Response& now) const;
   [[nodiscard]] std::optional<Yield> yield_across_cap(const Response& now) const;
-  enum class Way { flow, shortest };
+  enum class ReturnPath { flow, shortest };
   class ReturnMapping;
-  [[nodiscard]] bool is_brought_back(double xi, std::span<double> y, Way way) const;
+  [[nodiscard]] bool is_brought_back(double xi, std::span<double> y, ReturnPath path) const;
   [[nodiscard]] bool leads_out(bool towards_compression, const Response& now) const;
   [[nodiscard]] bool passes_apex(const Response& now) const;
   [[nodiscard]] double pressure_rate_at_end(const Response& now, bool towards_compression) const;

@@ -149,7 +149,7 @@ constexpr std::array<string_view, 9> k_point_domain{
     "dpc: an arc (transition_width) that ends above the axis of pressure",
     "plastic loading ends at corners of the program only",
     "warned: dpc flow that is not associated does negative plastic work at low pressure",
-    "integrator direct: vm, and hydrostatic loading; elsewhere the state depends on the way to it and is integrated",
+    "integrator direct: vm, and hydrostatic loading; elsewhere the state depends on the path to it and is integrated",
     "stiff where the elastic strains are far smaller than those of the program (vmdc in tension, dpc in shear, "
     "stiffness_ratio above 1000): explicit integrators need thousands of steps there, cvode-bdf and ida do not",
 };
@@ -219,13 +219,14 @@ std::unique_ptr<HybridSystem> bind_point(const ModelInput& input, std::vector<Co
 }
 
 std::vector<RestingChannel> channels(const ModelInput& input) {
-  std::vector<RestingChannel> list{{.name = "axial", .at_rest = {0.0, 0.0, Control::strain}, .bears_nothing = true}};
+  std::vector<RestingChannel> list{
+      {.name = "axial", .at_rest = {0.0, 0.0, Control::strain}, .is_unloaded_at_rest = true}};
   if (input.configuration == "hydrostatic") return list;
   const bool is_free = input.configuration == "simple" || input.configuration == "triaxial";
   list.push_back({.name = "lateral",
                   .at_rest = {0.0, 0.0, is_free ? Control::stress : Control::strain},
                   .is_lateral = true,
-                  .bears_nothing = true});
+                  .is_unloaded_at_rest = true});
   return list;
 }
 

@@ -46,14 +46,14 @@ void MaterialPoint::complete(double xi, std::span<double> y) {
   const bool has_flow_alone = is_solvable();
   if (has_flow_alone || !is_stress(k_axial) || !is_stress(k_lateral)) {
     try {
-      if (is_brought_back(xi, y, Way::flow)) return;
+      if (is_brought_back(xi, y, ReturnPath::flow)) return;
     } catch (const std::domain_error&) {
       if (has_flow_alone) throw;
     }
     y[k_phi] = phi;
     y[k_deviatoric] = deviatoric;
   }
-  if (!has_flow_alone && is_brought_back(xi, y, Way::shortest)) return;
+  if (!has_flow_alone && is_brought_back(xi, y, ReturnPath::shortest)) return;
   throw DomainError(Limit::loss_of_uniqueness, "no plastic strain brings the stress back to the yield surface");
 }
 
@@ -100,11 +100,11 @@ MaterialPoint::Flow MaterialPoint::flow_to_surface(const Response& now) const {
 class MaterialPoint::ReturnMapping {
  public:
   /// @param y  in: the guess; out: the corrected state
-  ReturnMapping(const MaterialPoint& point, double xi, std::span<double> y, Way way)
+  ReturnMapping(const MaterialPoint& point, double xi, std::span<double> y, ReturnPath path)
       : point_(point),
         xi_(xi),
         y_(y),
-        is_along_flow_(way == Way::flow),
+        is_along_flow_(path == ReturnPath::flow),
         has_caps_(is_compressible(point.settings_.parameters.model)),
         guess_{y[k_phi], y[k_deviatoric]} {}
 
@@ -241,8 +241,8 @@ class MaterialPoint::ReturnMapping {
   int halvings_ = 0;
 };
 
-bool MaterialPoint::is_brought_back(double xi, std::span<double> y, Way way) const {
-  return ReturnMapping(*this, xi, y, way).succeeds();
+bool MaterialPoint::is_brought_back(double xi, std::span<double> y, ReturnPath path) const {
+  return ReturnMapping(*this, xi, y, path).succeeds();
 }
 
 }  // namespace monograin::compressible

@@ -79,7 +79,7 @@ Yield yield_of_shear(const Properties& at, const CapConstants& cap, Branch branc
 }
 
 /// Straight stress path in the plane of p and s. Finds where the path leaves a segment's formula, if it begins inside.
-struct Way {
+struct StressPath {
   double p, s, p_rate, s_rate;
 
   /// Parameter t at which the path leaves (x0 + x1 p)^2 + (y0 + y1 s)^2 = radius^2.
@@ -209,7 +209,7 @@ Segment neighbour(const Parameters& parameters, Segment segment, bool towards_co
 std::optional<Exit> way_out(const Parameters& parameters, const Properties& properties, double p, double s,
                             double p_rate, double s_rate) {
   const double centre = properties.cap_centre.value;
-  const Way way{p, s, p_rate, s_rate};
+  const StressPath path{p, s, p_rate, s_rate};
   std::optional<Exit> first;
   const auto consider = [&](Segment segment, double side, std::optional<double> t) {
     if (!t) return;
@@ -224,12 +224,12 @@ std::optional<Exit> way_out(const Parameters& parameters, const Properties& prop
   const double shear_side = s + s_rate > 0.0 ? 1.0 : -1.0;
   if (parameters.model != YieldModel::dpc) {
     const double by_strength = 1.0 / properties.shear_strength.value;
-    consider(Segment::shear, shear_side, way.out_of(0.0, 0.0, 0.0, by_strength, 1.0));
+    consider(Segment::shear, shear_side, path.out_of(0.0, 0.0, 0.0, by_strength, 1.0));
     if (parameters.model == YieldModel::vm) return first;
     consider(Segment::tension, shear_side,
-             way.out_of(0.0, 1.0 / properties.tensile_strength.value, 0.0, by_strength, 1.0));
+             path.out_of(0.0, 1.0 / properties.tensile_strength.value, 0.0, by_strength, 1.0));
     const double by_axis = 1.0 / half_axis(properties).value;
-    consider(Segment::cap, shear_side, way.out_of(by_axis * centre, by_axis, 0.0, by_strength, 1.0));
+    consider(Segment::cap, shear_side, path.out_of(by_axis * centre, by_axis, 0.0, by_strength, 1.0));
     return first;
   }
   const CapConstants cap = cap_constants(parameters, properties);
@@ -240,11 +240,11 @@ std::optional<Exit> way_out(const Parameters& parameters, const Properties& prop
       if (side * (s + std::max(t, 0.0) * s_rate) >= -k_slack) consider(Segment::shear, side, t);
     }
     if (parameters.transition_width == 0.0) continue;
-    const auto t = way.out_of(centre, 1.0, -cap.arc_centre.value, side, cap.arc_radius.value);
+    const auto t = path.out_of(centre, 1.0, -cap.arc_centre.value, side, cap.arc_radius.value);
     if (t && side * (s + *t * s_rate) > cap.arc_centre.value) consider(Segment::transition, side, t);
   }
   const auto out =
-      way.out_of(centre, 1.0, 0.0, cap.flow_stretch.value * properties.axis_ratio.value, half_axis(properties).value);
+      path.out_of(centre, 1.0, 0.0, cap.flow_stretch.value * properties.axis_ratio.value, half_axis(properties).value);
   consider(Segment::cap, out && s + *out * s_rate > 0.0 ? 1.0 : -1.0, out);
   return first;
 }

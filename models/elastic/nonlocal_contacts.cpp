@@ -134,7 +134,7 @@ bool Contacts::eliminate() noexcept {
 
 /// True where all stiffnesses vanish together, as at first touch. Callers of move_centre() then substitute equal ones,
 /// under which the centre moves as between equal contacts.
-bool Contacts::bears_nothing() const noexcept {
+bool Contacts::carries_no_load() const noexcept {
   return std::ranges::all_of(stiffness_, [](double stiffness) { return stiffness == 0.0; });
 }
 
@@ -235,7 +235,7 @@ void Contacts::set_approach_rates_of_walls(std::span<const Ramp> ramps) {
 void Contacts::let_centre_follow(std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy,
                                  double touch, double pull, std::span<const char> touches) {
   const std::size_t n = class_count();
-  const bool is_first_touch = bears_nothing();
+  const bool is_first_touch = carries_no_load();
   for (std::size_t j = 0; is_first_touch && j < n; ++j) {
     const bool is_touching = !takes_force(ramps[j]) && y[j] == 0.0 && entry(j, n) >= 0.0;
     if (is_touching && !is_redundant_[j]) stiffness_[j] = 1.0;

@@ -191,7 +191,7 @@ class Contacts {
   [[nodiscard]] double lift(std::size_t index, std::span<const double> y) const noexcept;
   [[nodiscard]] double net_force(std::size_t direction) const noexcept;
   [[nodiscard]] bool eliminate() noexcept;
-  [[nodiscard]] bool bears_nothing() const noexcept;
+  [[nodiscard]] bool carries_no_load() const noexcept;
   [[nodiscard]] Eigen::Vector3d way_to_balance(const Eigen::Vector3d& net_force);
   void move_centre(const Eigen::Vector3d& net_force, std::span<double> centre);
   [[nodiscard]] Eigen::Matrix3d directions_of_nothing() const;

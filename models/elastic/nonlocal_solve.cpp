@@ -128,7 +128,7 @@ void Contacts::stiffen_touching(const Search& search, std::span<const double> y)
 /// @param may_find_more  true if further touching walls may support the centre where the contacts do not
 void Contacts::balance_centre(const Search& search, bool may_find_more, std::span<double> y) {
   const auto centre = y.subspan(class_count());
-  if (bears_nothing()) stiffen_touching(search, y);
+  if (carries_no_load()) stiffen_touching(search, y);
   const Eigen::Vector3d unbalanced = corrected_net_force(search.imbalance);
   move_centre(unbalanced, centre);
   if (!may_find_more) return;

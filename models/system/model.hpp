@@ -215,9 +215,9 @@ struct DerivedParameter {
 /// A channel of a model without walls, at rest before the first step.
 struct RestingChannel {
   std::string_view name;
-  Ramp at_rest;                ///< constant ramp of the quantity that is controlled at rest [SI]
-  bool is_lateral = false;     ///< true for the second channel, which follows the lateral parts of the steps
-  bool bears_nothing = false;  ///< true if every other quantity that a step may prescribe is zero at rest
+  Ramp at_rest;                      ///< constant ramp of the quantity that is controlled at rest [SI]
+  bool is_lateral = false;           ///< true for the second channel, which follows the lateral parts of the steps
+  bool is_unloaded_at_rest = false;  ///< true if every other quantity that a step may prescribe is zero at rest
 };
 
 /// Ludwik's law sigma = Y + K eps_pl^(1/n), with the strain up to which a power law has to stand for it.

@@ -135,10 +135,10 @@ IntegratorChoice choose_integrator(const std::string& asked, const HybridSystem&
     return {asked, integrators::k_direct,
             "the state at any instant follows from equations that need no history: nothing is integrated"};
   }
-  return {
-      asked, switching_name(),
-      "the state depends on the way to it, so that it is integrated, in its explicit form: by the cheapest method, and "
-      "from the first phase that slows that down by one for stiff equations"};
+  return {asked, switching_name(),
+          "the state depends on the path to it, so that it is integrated, in its explicit form: by the cheapest "
+          "method, and "
+          "from the first phase that slows that down by one for stiff equations"};
 }
 
 std::string sundials_version() {

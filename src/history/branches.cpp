@@ -16,8 +16,8 @@ constexpr double k_same_reversal = 0.01;  ///< largest distance of equal reversa
 constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< least end of loading with a line, over x of the last reversal
 constexpr double k_round_off = 1e-12;          ///< force that counts as zero, over the force at the reversal
 constexpr double k_same_end = 1e-6;            ///< largest distance beyond the end of a piece that has a value, over x
-constexpr std::size_t k_short_way = 2;         ///< longest path between two turns that may be noise, in rows
-constexpr std::size_t k_least_short_ways = 3;  ///< number of such paths from which on they are noise
+constexpr std::size_t k_short_run = 2;         ///< longest path between two turns that may be noise, in rows
+constexpr std::size_t k_least_short_runs = 3;  ///< number of such paths from which on they are noise
 constexpr double k_noise_factor = 6.0;         ///< least turn over the median noise; none of thousands exceeds it
 constexpr double k_least_turn = 2e-3;          ///< least turn over the range of x
 
@@ -77,18 +77,18 @@ void compare_loading(const XyCurve& reference, const XyCurve& curve, BranchCompa
 /// Least distance by which x has to come back for a turn that is not noise, in units of x.
 [[nodiscard]] double least_turn(std::span<const double> x) {
   const auto [lowest, highest] = std::ranges::minmax(x);
-  std::vector<double> short_ways;
+  std::vector<double> short_runs;
   std::size_t begin = 0;
   for (std::size_t k = 1; k < x.size(); ++k) {
     const bool ends = k + 1 == x.size() || (x[k + 1] - x[k]) * (x[k] - x[begin]) < 0.0;
     if (!ends) continue;
-    if (k - begin <= k_short_way && k + 1 < x.size() && begin > 0) short_ways.push_back(std::abs(x[k] - x[begin]));
+    if (k - begin <= k_short_run && k + 1 < x.size() && begin > 0) short_runs.push_back(std::abs(x[k] - x[begin]));
     begin = k;
   }
   const double least = k_least_turn * (highest - lowest);
-  if (short_ways.size() < k_least_short_ways) return least;
-  const auto middle = short_ways.begin() + static_cast<std::ptrdiff_t>(short_ways.size() / 2);
-  std::ranges::nth_element(short_ways, middle);
+  if (short_runs.size() < k_least_short_runs) return least;
+  const auto middle = short_runs.begin() + static_cast<std::ptrdiff_t>(short_runs.size() / 2);
+  std::ranges::nth_element(short_runs, middle);
   return std::max(least, k_noise_factor * *middle);
 }
 
@@ -128,11 +128,11 @@ XyCurve first_loading(const XyCurve& curve) {
 }
 
 std::vector<Excursion> excursions(const XyCurve& curve) {
-  enum class Way { load, back, forth, none };  // none: x falls again before the reload is complete
+  enum class Phase { loading, unloading, reloading, none };  // none: x falls again before the reload is complete
   std::vector<Excursion> result;
   double largest = -std::numeric_limits<double>::infinity();
   std::size_t turn = 0;  // the last row at the largest x
-  Way way = Way::load;
+  Phase phase = Phase::loading;
   for (std::size_t k = 0; k < curve.x.size(); ++k) {
     const double x = curve.x[k];
     if (std::isnan(x)) continue;
@@ -140,22 +140,22 @@ std::vector<Excursion> excursions(const XyCurve& curve) {
       piece.x.push_back(x);
       piece.y.push_back(curve.y[k]);
     };
-    if (way == Way::back && x > result.back().back.x.back()) {
+    if (phase == Phase::unloading && x > result.back().back.x.back()) {
       XyCurve& back = result.back().back;
       result.back().forth = {{back.x.back()}, {back.y.back()}};
-      way = Way::forth;
-    } else if (way == Way::forth && x < result.back().forth.x.back()) {
-      way = Way::none;
+      phase = Phase::reloading;
+    } else if (phase == Phase::reloading && x < result.back().forth.x.back()) {
+      phase = Phase::none;
     }
-    if (way == Way::forth) append(result.back().forth);
+    if (phase == Phase::reloading) append(result.back().forth);
     if (x >= largest) {
       largest = x;
       turn = k;
-      way = Way::load;
+      phase = Phase::loading;
     } else if (turn + 1 == k) {
-      way = Way::back;
+      phase = Phase::unloading;
       result.push_back({.back = {{curve.x[turn], x}, {curve.y[turn], curve.y[k]}}, .forth = {}});
-    } else if (way == Way::back) {
+    } else if (phase == Phase::unloading) {
       append(result.back().back);
     }
   }
@@ -229,8 +229,8 @@ std::vector<BranchComparison> compare_bands(const XyCurve& reference, const XyCu
                                             std::span<const double> bands, double least) {
   const XyCurve loading = first_loading(reference);
   const XyCurve own_loading = first_loading(curve);
-  const auto ways = excursions(reference);
-  const auto own_ways = excursions(curve);
+  const auto reference_excursions = excursions(reference);
+  const auto own_excursions = excursions(curve);
   std::vector<BranchComparison> lines;
   for (std::size_t band = 1; band < bands.size(); ++band) {
     const double from = bands[band - 1];
@@ -256,12 +256,13 @@ std::vector<BranchComparison> compare_bands(const XyCurve& reference, const XyCu
     }
     line.coverage = rows > 0.0 ? compared / rows : k_nan;
     if (compared > 0.0) line.rms = std::sqrt(sum / compared);
-    for (const Excursion& way : ways) {
-      const double reversal = way.back.x.front();
+    for (const Excursion& excursion : reference_excursions) {
+      const double reversal = excursion.back.x.front();
       if (!(reversal > from && reversal <= to)) continue;
-      const Excursion* own = excursion_from(own_ways, reversal);
+      const Excursion* own = excursion_from(own_excursions, reversal);
       if (own == nullptr) continue;
-      const double distance = std::fmax(largest_distance(way.back, own->back), largest_distance(way.forth, own->forth));
+      const double distance =
+          std::fmax(largest_distance(excursion.back, own->back), largest_distance(excursion.forth, own->forth));
       line.unloading = std::fmax(line.unloading, distance / largest_before(reference, reversal));
     }
     lines.push_back(line);

@@ -42,7 +42,7 @@ TEST_F(MaterialPointCommand, RunsAndSaysWhyItIntegrates) {
   const auto run = nlohmann::json::parse(text("runs/point/run.json"));
   EXPECT_EQ(run.at("integrator").at("asked"), "auto");
   EXPECT_EQ(run.at("integrator").at("used"), "odeint-dopri5, cvode-bdf where stiff");
-  EXPECT_NE(run.at("integrator").at("why").get<std::string>().find("depends on the way"), std::string::npos);
+  EXPECT_NE(run.at("integrator").at("why").get<std::string>().find("depends on the path"), std::string::npos);
   EXPECT_TRUE(run.at("classes").empty());
 }
 

@@ -267,18 +267,18 @@ std::string data_text(const DataReport& report) {
   text += '\n' + aligned(columns);
   text += fmt::format("\nx: {}, y: {}\n", named(report.x), named(report.y));
   for (const std::string& remark : report.remarks) text += remark + '\n';
-  std::vector<TextRow> ways{{"way", "lines", "rows", "x from", "to", "y from", "to"}};
+  std::vector<TextRow> branches{{"branch", "lines", "rows", "x from", "to", "y from", "to"}};
   std::array<std::size_t, 2> counts{};
   for (const DataBranch& branch : report.branches) {
     const std::size_t count = ++counts[branch.is_loading ? 0 : 1];
-    ways.push_back(
+    branches.push_back(
         {fmt::format("{} {}", branch.is_loading ? "loading" : "unloading", count),
          fmt::format("{}-{}", report.lines[branch.begin], report.lines[branch.end]),
          fmt::format("{}", branch.end - branch.begin + 1), with_unit(report.x, report.x.values[branch.begin]),
          with_unit(report.x, report.x.values[branch.end]), with_unit(report.y, report.y.values[branch.begin]),
          with_unit(report.y, report.y.values[branch.end])});
   }
-  if (ways.size() > 1) text += '\n' + aligned(ways);
+  if (branches.size() > 1) text += '\n' + aligned(branches);
   return text;
 }
 

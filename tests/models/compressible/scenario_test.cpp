@@ -104,7 +104,7 @@ TEST(MaterialPointScenario, OffersDirectOnlyWhereThereIsSuchAForm) {
   const Scene integrated = make_scene(parse_scenario(die("preset = \"Base case\""), "point"));
   const IntegratorChoice choice = choose_integrator("auto", *integrated.system);
   EXPECT_EQ(choice.used, "odeint-dopri5, cvode-bdf where stiff");
-  EXPECT_NE(choice.why.find("depends on the way"), std::string::npos);
+  EXPECT_NE(choice.why.find("depends on the path"), std::string::npos);
   const Scene solved = make_scene(parse_scenario(die("preset = \"Base case\"\nyield_model = \"vm\""), "point"));
   EXPECT_EQ(choose_integrator("auto", *solved.system).used, "direct");
 }

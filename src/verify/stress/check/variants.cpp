@@ -121,7 +121,7 @@ Start rest_of(const CheckedScenario& scenario, const Step& first, double gap) {
   if (model.has_walls()) return {.first = Target{Step::Kind::displacement, -gap}, .lateral = {}};
   const auto known = [](const RestingChannel& rest, Step::Kind kind) -> std::optional<Target> {
     if (control_of(kind) == rest.at_rest.control) return Target{kind, rest.at_rest.start};
-    return rest.bears_nothing ? std::optional(Target{kind, 0.0}) : std::nullopt;
+    return rest.is_unloaded_at_rest ? std::optional(Target{kind, 0.0}) : std::nullopt;
   };
   Start start;
   for (const RestingChannel& rest : model.channels(model_input(scenario))) {
