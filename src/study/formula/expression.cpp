@@ -302,7 +302,7 @@ std::vector<double> Expression::evaluate(const Lookup& lookup) const {
   return std::move(stack.back());
 }
 
-std::vector<std::string_view> Expression::names() const {
+std::vector<std::string_view> Expression::names() const& {
   std::vector<std::string_view> result;
   for (const Instruction& step : program_) {
     if (step.operation == Operation::name) result.emplace_back(step.name);

@@ -50,7 +50,8 @@ class Expression {
   [[nodiscard]] std::vector<double> evaluate(const Lookup& lookup) const;
 
   /// Names in the formula, in order, repeated as often as they occur.
-  [[nodiscard]] std::vector<std::string_view> names() const;
+  [[nodiscard]] std::vector<std::string_view> names() const&;
+  void names() const&& = delete;  ///< the names would end with the expression
   /// True if every name stands alone inside end(), so that the value depends on the last row only.
   [[nodiscard]] bool needs_last_row_only() const noexcept;
 

@@ -34,7 +34,8 @@ void check_results(Reading& reading, const Section& root) {
   for (std::size_t i = 0; i < texts.size(); ++i) {
     SourceLocation where = root.value_place("results", i);
     try {
-      for (const std::string_view name : Expression(texts[i]).names()) {
+      const Expression formula(texts[i]);
+      for (const std::string_view name : formula.names()) {
         if (columns.empty() || std::ranges::find(columns, name) != columns.end()) continue;
         reading.faults.add(where, fmt::format("\"{}\": '{}' is not in columns, which leaves out all others",
                                               shown(texts[i]), shown(name)));

@@ -66,9 +66,10 @@ TEST(Expression, MakesOneNumberOfAColumn) {
 }
 
 TEST(Expression, NamesTheColumnsThatItReads) {
-  EXPECT_EQ(Expression("max(axial.force) / end(`contact radius`) + 2 * axial.force").names(),
-            (std::vector<std::string_view>{"axial.force", "contact radius", "axial.force"}));
-  EXPECT_TRUE(Expression("sqrt(2) + 1").names().empty());
+  const Expression formula("max(axial.force) / end(`contact radius`) + 2 * axial.force");
+  EXPECT_EQ(formula.names(), (std::vector<std::string_view>{"axial.force", "contact radius", "axial.force"}));
+  const Expression number("sqrt(2) + 1");
+  EXPECT_TRUE(number.names().empty());
 }
 
 TEST(Expression, KnowsWhetherRowsBeforeTheLastMatter) {
