@@ -70,7 +70,7 @@ COLUMNS = {
     "time": "time since the start of the program",
     "step": "number of the step of the program, from 1",
     "row": "0 at an output point, -1 just before and 1 just after an event or a corner of the program",
-    "apparent_radius": "radius of the sphere whose caps the contacts cut off",
+    "apparent_radius": "radius of the sphere that describes the free surface",
     "volume": "volume of the particle",
     "work": "work of all walls on the particle since the start",
     "stored_energy": "part of the work that unloading can recover",
