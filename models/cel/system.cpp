@@ -459,8 +459,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   contacts::Energies energies = contacts::k_no_energies;
   if (has_energies()) {
     const double energy_unit = force_unit() * length;
-    energies = {.work = y[work_place_] * energy_unit, .stored = particle_.stored_energy() * energy_unit};
-    energies.dissipation = energies.work - energies.stored;
+    energies = {y[work_place_] * energy_unit, particle_.stored_energy() * energy_unit};
   }
   columns_.write(
       energies, classes_.size(),

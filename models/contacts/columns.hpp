@@ -15,15 +15,13 @@
 
 namespace monograin::contacts {
 
-/// Energies of a particle, SI.
+/// Energies of a particle, SI. The dissipation is their difference.
 struct Energies {
   double work = 0.0;
   double stored = 0.0;
-  double dissipation = 0.0;
 };
 /// Energies of a row if the system leaves them out.
 inline constexpr Energies k_no_energies{std::numeric_limits<double>::quiet_NaN(),
-                                        std::numeric_limits<double>::quiet_NaN(),
                                         std::numeric_limits<double>::quiet_NaN()};
 
 /// Numbers of one contact in a row of the history, SI.
@@ -87,9 +85,10 @@ class Columns {
  public:
   Columns(bool has_stored_energy, bool has_contact_area, std::span<const std::string_view> regimes,
           std::span<const ContactClass> classes, bool has_centre = false, std::span<const Observable> others = {})
-      : energies_(std::span(k_energies).first(has_stored_energy ? k_energies.size() : 1)),
-        has_contact_area_(has_contact_area) {
-    for (const OfParticle& column : energies_) observables_.push_back({std::string(column.name), "J", {}});
+      : energies_(has_stored_energy ? k_energy_observables.size() : 1), has_contact_area_(has_contact_area) {
+    for (const std::string_view name : std::span(k_energy_observables).first(energies_)) {
+      observables_.push_back({std::string(name), "J", {}});
+    }
     observables_.insert(observables_.end(), others.begin(), others.end());
     for (const ContactClass& c : classes) add_contact_columns(c.name, regimes, observables_, has_contact_area);
     if (has_centre) add_centre_columns(observables_);
@@ -102,8 +101,8 @@ class Columns {
   template <class ContactOf>
   void write(const Energies& energies, std::size_t classes, ContactOf&& contact_of, std::span<double> values,
              std::span<const double> others = {}) const {
-    auto out = values.begin();
-    for (const OfParticle& column : energies_) *out++ = energies.*column.value;
+    const std::array row{energies.work, energies.stored, energies.work - energies.stored};  // as k_energy_observables
+    auto out = std::ranges::copy(std::span(row).first(energies_), values.begin()).out;
     out = std::ranges::copy(others, out).out;
     for (std::size_t i = 0; i < classes; ++i) {
       const VisibleContact contact = contact_of(i);
@@ -114,15 +113,7 @@ class Columns {
   }
 
  private:
-  struct OfParticle {
-    std::string_view name;
-    double Energies::*value;
-  };
-  static constexpr std::array k_energies{OfParticle{k_energy_observables[0], &Energies::work},
-                                         OfParticle{k_energy_observables[1], &Energies::stored},
-                                         OfParticle{k_energy_observables[2], &Energies::dissipation}};
-
-  std::span<const OfParticle> energies_;
+  std::size_t energies_;  ///< number of energy columns
   bool has_contact_area_;
   std::vector<Observable> observables_;
 };

@@ -322,18 +322,17 @@ class IndependentContacts final : public HybridSystem {
   [[nodiscard]] double stress_unit() const noexcept { return force_unit_ / (length_ * length_); }
   /// @param work  over the force unit and R0
   [[nodiscard]] Energies energies(double work) {
-    const double energy_unit = force_unit_ * length_;
-    Energies result{.work = work * energy_unit};
+    double stored = 0.0;
     if constexpr (k_can_store_energy) {
       if (has_stored_energy()) {
-        result.stored = energy_unit * sum([&](std::size_t i) {
-                          const double d = displacements_[i];
-                          return contacts_[i].bears(law_, d) ? law_.stored(contacts_[i].branch(), d) : 0.0;
-                        });
+        stored = sum([&](std::size_t i) {
+          const double d = displacements_[i];
+          return contacts_[i].bears(law_, d) ? law_.stored(contacts_[i].branch(), d) : 0.0;
+        });
       }
-      result.dissipation = result.work - result.stored;
     }
-    return result;
+    const double energy_unit = force_unit_ * length_;
+    return {work * energy_unit, stored * energy_unit};
   }
   [[nodiscard]] bool has_stored_energy() const {
     if constexpr (requires(const Law& law) { law.has_stored_energy(); }) return law_.has_stored_energy();

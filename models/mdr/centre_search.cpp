@@ -58,12 +58,18 @@ double search_maximum(double a, double b, double& best, Function&& function) {
   return largest;
 }
 
+/// True for a contact whose peeling edge supports a free centre: its wall is under displacement control, and it acts on
+/// the centre.
+bool supports_by_peeling(const Particle& p, std::size_t i) {
+  return p.branch(i).edge.peels() && !p.is_loaded(i) && p.centre().acts(i);
+}
+
 /// First contact whose peeling edge is beyond pull-off, if any. Towards pull-off its stiffness falls without bound, so
 /// the centre is no longer held even before.
 std::optional<std::size_t> contact_beyond_pull_off(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!supports_by_peeling(p, i)) continue;
     const ContactBranch& branch = p.branch(i);
-    if (!branch.edge.peels() || p.is_loaded(i) || !p.centre().acts(i)) continue;
     const Frame at = branch.frame(p.law(), p.at().r, p.contact(i).overlap);
     if (at.displacement < branch.pull_off(p.law(), at.indenter).by_displacement.displacement_1d) return i;
   }
@@ -80,15 +86,12 @@ double softening_along(const Particle& p, std::size_t i, const CentreVector& dir
                            p.contact(i).contact.contact_radius);
 }
 
-/// True if the edge peels and its wall is under displacement control.
-bool peels(const Particle& p, std::size_t i) { return p.branch(i).edge.peels() && !p.is_loaded(i); }
-
 /// Round-off of the centre's stiffness next to a fold, where the stiffness goes with the root of the distance from it.
 /// Beyond the fold there is no state, or only one in which the contacts do not hold the centre.
 double round_off_of(const Particle& p, const CentreStiffness& softest) {
   double softening = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (peels(p, i)) softening += std::abs(softening_along(p, i, softest.direction));
+    if (supports_by_peeling(p, i)) softening += std::abs(softening_along(p, i, softest.direction));
   }
   return std::sqrt(2.0 * softening * softest.direction.norm() * p.force_rounding());
 }
@@ -207,7 +210,7 @@ class BalanceSearch {
 
 bool may_peel_off(const Particle& p) noexcept {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (peels(p, i) && p.centre().acts(i)) return true;
+    if (supports_by_peeling(p, i)) return true;
   }
   return false;
 }
@@ -219,7 +222,7 @@ std::optional<std::size_t> weakest_contact(Particle& p) {
   double sum = 0.0;
   double size = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!peels(p, i) || !p.centre().acts(i)) continue;
+    if (!supports_by_peeling(p, i)) continue;
     softenings[i] = softening_along(p, i, softest);
     sum += softenings[i];
     size += std::abs(softenings[i]);
@@ -234,8 +237,7 @@ std::optional<std::size_t> weakest_contact(Particle& p) {
   };
   std::optional<std::size_t> weakest;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!peels(p, i) || !p.centre().acts(i)) continue;
-    if (!weakest || gives_way_before(i, *weakest)) weakest = i;
+    if (supports_by_peeling(p, i) && (!weakest || gives_way_before(i, *weakest))) weakest = i;
   }
   return weakest;
 }

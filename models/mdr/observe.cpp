@@ -63,9 +63,8 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   contacts::Energies energies = contacts::k_no_energies;
   if (has_energies()) {
     const double energy_unit = force_unit * length;
-    const double work = y[k_work] + at.force_work;
-    const double stored = now_.particle.energy(PlasticPart::recoverable);
-    energies = {work * energy_unit, stored * energy_unit, (work - stored) * energy_unit};
+    energies = {(y[k_work] + at.force_work) * energy_unit,
+                now_.particle.energy(PlasticPart::recoverable) * energy_unit};
   }
   columns_.write(energies, now_.particle.size(), row_of, values);
   if (!setup_->settings.centre_is_free) return;

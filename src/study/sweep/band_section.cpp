@@ -39,9 +39,9 @@ PlacedBands bands_in(Reading& reading, const Section& root) {
   const std::vector<KeySpec> keys = band_keys();
   const Section section(reading, root.table("bands", "[bands]"), keys);
   PlacedBands bands{.request = {.x = section.text("x"), .y = section.texts("y")}, .columns = {}};
-  bands.columns.push_back({bands.request.x, section.value_place("x"), false});
+  bands.columns.push_back({bands.request.x, section.value_place("x")});
   for (std::size_t i = 0; i < bands.request.y.size(); ++i) {
-    bands.columns.push_back({bands.request.y[i], section.value_place("y", i), false});
+    bands.columns.push_back({bands.request.y[i], section.value_place("y", i)});
   }
   bands.request.points = static_cast<int>(section.number("points").value_or(bands.request.points));
   if (auto percentiles = percentiles_in(reading, section); !percentiles.empty()) {

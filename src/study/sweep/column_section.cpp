@@ -8,7 +8,6 @@
 #include "history/recorder.hpp"
 #include "scenario/words.hpp"
 #include "scene/scene.hpp"
-#include "study/formula/expression.hpp"
 
 namespace monograin::sweep {
 
@@ -28,11 +27,17 @@ std::vector<PlacedColumn> columns_of_results(Reading& reading, const Section& ro
   return columns;
 }
 
+void add_formula_fault(FaultList& faults, SourceLocation where, const std::string& formula,
+                       const ExpressionError& error, const std::string& advice) {
+  where.column += 1 + error.offset();  // after the quote
+  faults.add(where, fmt::format("\"{}\": {}{}", shown(formula), error.what(), advice));
+}
+
 void check_results(Reading& reading, const Section& root) {
   const std::vector<std::string> columns = root.texts("columns");
   const std::vector<std::string> texts = root.texts("results");
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    SourceLocation where = root.value_place("results", i);
+    const SourceLocation where = root.value_place("results", i);
     try {
       const Expression formula(texts[i]);
       for (const std::string_view name : formula.names()) {
@@ -41,8 +46,7 @@ void check_results(Reading& reading, const Section& root) {
                                               shown(texts[i]), shown(name)));
       }
     } catch (const ExpressionError& error) {
-      where.column += 1 + error.offset();  // after the quote
-      reading.faults.add(where, fmt::format("\"{}\": {}", shown(texts[i]), error.what()));
+      add_formula_fault(reading.faults, where, texts[i], error);
     }
   }
 }
@@ -51,11 +55,14 @@ void check_columns(std::span<const PlacedColumn> columns, const CheckedScenario&
   if (columns.empty()) return;
   const Scene scene = make_scene(scenario);
   const Table history = Recorder(*scene.system).take_history();
+  std::vector<std::string_view> all;
+  std::vector<std::string_view> of_numbers;
+  for (const Column& column : history.columns()) {
+    all.push_back(column.name);
+    if (!column.holds_words()) of_numbers.push_back(column.name);
+  }
   for (const auto& [name, where, may_hold_words] : columns) {
-    std::vector<std::string_view> names;
-    for (const Column& column : history.columns()) {
-      if (may_hold_words || !column.holds_words()) names.push_back(column.name);
-    }
+    const std::vector<std::string_view>& names = may_hold_words ? all : of_numbers;
     if (name.empty() || std::ranges::find(names, name) != names.end()) continue;
     faults.add(where, fmt::format("'{}' is no column of the histories; expected one of {}{}", shown(name),
                                   listed(names), did_you_mean(name, names)));

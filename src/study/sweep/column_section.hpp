@@ -7,6 +7,7 @@
 
 #include "scenario/scenario.hpp"
 #include "scenario/section.hpp"
+#include "study/formula/expression.hpp"
 
 namespace monograin::sweep {
 
@@ -20,6 +21,10 @@ struct PlacedColumn {
 /// The columns of the histories that `columns`, a list of columns of the results, needs. A fault for each entry that
 /// does not begin with "end." or "max.".
 [[nodiscard]] std::vector<PlacedColumn> columns_of_results(Reading& reading, const Section& root);
+
+/// Reports what is wrong with a formula that stands in quotes at `where`.
+void add_formula_fault(FaultList& faults, SourceLocation where, const std::string& formula,
+                       const ExpressionError& error, const std::string& advice = {});
 
 /// Checks that the formulas in `results` can be read, and name no column that `columns` leaves out.
 void check_results(Reading& reading, const Section& root);

@@ -132,13 +132,15 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
 void keep_history(const Table& history, const fs::path& file) { write_text_file(file, csv_text(history)); }
 
 /// @param histories  folder for the run's history; empty: it is not kept
-[[nodiscard]] Outcome run_one(const Sweep& sweep, std::size_t index, const fs::path& histories, Layout& layout) {
+/// @param left_out   parts of the run that the results do not depend on
+[[nodiscard]] Outcome run_one(const Sweep& sweep, std::size_t index, const fs::path& histories, const LeftOut& left_out,
+                              Layout& layout) {
   Outcome outcome;
   outcome.row.run = index + 1;
   std::optional<RunRecord> record;
   try {
     const CheckedScenario scenario = scenario_of(sweep, index);
-    record = histories.empty() ? record_run(scenario, not_needed_by(sweep.columns)) : run_scenario(scenario).record;
+    record = histories.empty() ? record_run(scenario, left_out) : run_scenario(scenario).record;
   } catch (const ScenarioError& error) {
     outcome.row.status = "refused";
     outcome.row.reason = plain(messages_of(error));
@@ -308,12 +310,13 @@ void run_all(const Sweep& sweep, const SweepOptions& options, const std::vector<
              SweepJournal& journal) {
   const fs::path histories = sweep.keeps_histories ? options.folder / "histories" : fs::path();
   if (!histories.empty()) fs::create_directories(histories);
+  const LeftOut left_out = not_needed_by(sweep.columns);
   const std::size_t threads = thread_count(options.threads);
   std::vector<Layout> layouts(threads);
   std::mutex mutex;
   std::size_t done = 0;
   for_each_index(runs.size(), threads, [&](std::size_t i, std::size_t thread) {
-    const Outcome outcome = run_one(sweep, runs[i], histories, layouts[thread]);
+    const Outcome outcome = run_one(sweep, runs[i], histories, left_out, layouts[thread]);
     const std::scoped_lock lock(mutex);
     journal.append(outcome.row, outcome.columns);
     if (options.progress) options.progress(++done, runs.size());

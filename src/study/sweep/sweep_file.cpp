@@ -265,17 +265,11 @@ class SweepReader {
     const std::vector<std::string> texts = root.texts("constraints");
     for (std::size_t i = 0; i < texts.size(); ++i) {
       const SourceLocation where = root.value_place("constraints", i);
-      report_at(where, texts[i], [&] { constraints_.push_back({Constraint(texts[i]), texts[i], where}); });
-    }
-  }
-
-  template <class Action>
-  void report_at(SourceLocation where, const std::string& text, Action action) {
-    try {
-      action();
-    } catch (const ExpressionError& error) {
-      where.column += 1 + error.offset();  // after the quote
-      faults_.add(where, fmt::format("\"{}\": {}", shown(text), error.what()));
+      try {
+        constraints_.push_back({Constraint(texts[i]), texts[i], where});
+      } catch (const ExpressionError& error) {
+        sweep::add_formula_fault(faults_, where, texts[i], error);
+      }
     }
   }
 
@@ -287,16 +281,14 @@ class SweepReader {
       if (factor.is_number() && (takes_lists || factor.values.empty())) names.push_back(factor.key);
     }
     for (const PlacedConstraint& entry : constraints_) {
-      SourceLocation where = entry.where;
       try {
         static_cast<void>(entry.constraint.holds([&](std::string_view name) {
           return std::ranges::find(names, name) == names.end() ? std::nullopt : std::optional(1.0);
         }));
       } catch (const ExpressionError& error) {
-        where.column += 1 + error.offset();
         const std::string suggestion = did_you_mean(error.unknown_name(), names);
-        faults_.add(where, fmt::format("\"{}\": {}{}", shown(entry.text), error.what(),
-                                       suggestion.empty() ? "; expected one of " + listed(names) : suggestion));
+        sweep::add_formula_fault(faults_, entry.where, entry.text, error,
+                                 suggestion.empty() ? "; expected one of " + listed(names) : suggestion);
       }
     }
   }
