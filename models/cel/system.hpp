@@ -15,7 +15,7 @@
 #include "cel/particle.hpp"
 #include "contacts/columns.hpp"
 #include "system/hybrid_system.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::cel {
 

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <numbers>
 
+#include "system/resolution.hpp"
+
 namespace monograin::compressible {
 namespace {
 
 // Distance from 1 within which a ratio of slopes counts as 1.
-constexpr double k_same_slope = 1e-12;
 
 }  // namespace
 
@@ -72,7 +73,7 @@ std::vector<Diagnostic> WallLaw::warnings(double walls) const {
          "stiffer than Hertz's",
          "such unloadings", static_cast<double>(clipped_)});
   }
-  if (least_ratio_ < 1.0 - k_same_slope) {
+  if (least_ratio_ < 1.0 - k_same_value) {
     found.push_back({"unloading is, or would be, less steep than loading: the cycle may give back more than it took",
                      "least slope over that of loading", least_ratio_});
   }

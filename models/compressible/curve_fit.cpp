@@ -6,10 +6,11 @@
 #include <limits>
 #include <numeric>
 
+#include "system/resolution.hpp"
+
 namespace monograin::compressible {
 namespace {
 
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr double k_least_exponent = 0.05;
 constexpr double k_greatest_exponent = 12.0;
 constexpr std::size_t k_scanned_exponents = 60;

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "contacts/wall_contact.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::contacts {
 
@@ -39,7 +39,6 @@ template <class Law>
 /// @param force         largest force of the program, over the law's unit; 0: not known
 template <class Law>
 [[nodiscard]] Scales scales_of(Law& law, double displacement, double force) {
-  constexpr double k_infinity = std::numeric_limits<double>::infinity();
   using Contact = WallContact<Law>;
   using Branch = typename Law::Branch;
   const bool is_said = displacement > 0.0 || force > 0.0;

@@ -6,6 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "system/resolution.hpp"
+
 namespace monograin::contacts {
 
 /// Coordinate of a contact at the first trial instant ahead at which it is clearly open or closed. 0 if it is so at
@@ -15,9 +17,8 @@ namespace monograin::contacts {
 /// @param at     step coordinate -> coordinate of the contact; throws std::domain_error where there is no state
 template <class At>
 [[nodiscard]] std::optional<double> side_ahead(double xi, double touch, At&& at) {
-  constexpr double k_first = 1e-9;  // each further trial is ten times as far, while the contact still just touches
   double later = xi;
-  for (double distance = k_first; later < 1.0; distance *= 10.0) {
+  for (double distance = k_ahead; later < 1.0; distance *= 10.0) {
     later = std::min(1.0, xi + distance);
     try {
       if (const double value = at(later); std::abs(value) > touch) return value;

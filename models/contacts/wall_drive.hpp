@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/resolution.hpp"
 #include "system/walls.hpp"
 
 namespace monograin::contacts {
@@ -53,7 +54,6 @@ class WallDrive {
 
  private:
   /// Relative difference up to which two values count as equal.
-  static constexpr double k_same_value = 1e-12;
 
   void find_direction() noexcept { direction_ = rate() > 0.0 ? 1 : rate() < 0.0 ? -1 : 0; }
 

@@ -12,7 +12,7 @@
 #include "stress/checks.hpp"
 #include "stress/draw.hpp"
 #include "system/model.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {

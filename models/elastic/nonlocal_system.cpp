@@ -7,7 +7,7 @@
 
 #include "contacts/side_ahead.hpp"
 #include "system/difficulty.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {

@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "elastic/hertz.hpp"
@@ -8,6 +7,7 @@
 #include "stress/checks.hpp"
 #include "stress/draw.hpp"
 #include "system/model.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::hertz {
 namespace {
@@ -66,7 +66,6 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
 
 /// Displacement and force at which a contact meets a condition for the first time.
 Reach reach(const ModelInput& input, const Until& until) {
-  constexpr double k_infinity = std::numeric_limits<double>::infinity();
   const double radius = input.radius;
   const WallLaw law{composite_modulus(input)};
   const double force_unit = law.unit_force(radius);

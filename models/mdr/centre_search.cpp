@@ -10,11 +10,11 @@
 
 #include "mdr/guards.hpp"
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
 
-constexpr double k_round_off = std::numeric_limits<double>::epsilon();
 constexpr int k_newton_limit = 60;
 constexpr int k_most_halvings = 40;
 // Longest Newton step (over R0) with the contacts' own stiffnesses; contacts below the resolution give longer ones.
@@ -29,13 +29,9 @@ constexpr double k_longer = 1.25;
 constexpr int k_most_sections = 40;
 // A step below this (over R0) that is not much shorter than the last one is round-off: the search has converged.
 constexpr double k_rounding_step = 1e-12;
-// Eigenvalue of the stiffness, over the largest one, that is round-off.
-constexpr double k_no_stiffness = 1e-12;
 // Softenings at a fold are equal if they differ by less than this share of their sum. The place of the centre there is
 // accurate to the root of the integration error.
 constexpr double k_alike = 1e-2;
-// Components of two normals that differ by less are equal.
-constexpr double k_same_component = 1e-9;
 
 /// Searches between a and b for a point where the function is positive, by golden sections towards its maximum.
 /// @param best  in: a point between a and b with a larger value than both; out: the point with the largest value found
@@ -100,7 +96,7 @@ double round_off_of(const Particle& p, const CentreStiffness& softest) {
 /// the walls in a scenario.
 bool comes_first(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   for (Eigen::Index k = 0; k < one.size(); ++k) {
-    if (std::abs(one[k] - other[k]) > k_same_component) return one[k] < other[k];
+    if (std::abs(one[k] - other[k]) > k_same_direction) return one[k] < other[k];
   }
   return false;
 }
@@ -130,7 +126,7 @@ class BalanceSearch {
 
  private:
   /// True if no part of the last step brought the centre nearer to balance.
-  [[nodiscard]] bool is_stuck() const noexcept { return path_ < 2.0 * k_round_off; }
+  [[nodiscard]] bool is_stuck() const noexcept { return path_ < 2.0 * k_epsilon; }
 
   [[nodiscard]] CentreVector newton_step() const {
     const CentreVector step = p_.centre().step();
@@ -168,7 +164,7 @@ class BalanceSearch {
         p_.evaluate_forces(xi_, y_);
         if (is_nearer(step.norm())) break;
       } catch (const std::domain_error&) {
-        if (step.norm() < k_round_off || halving + 1 == k_most_halvings) throw;
+        if (step.norm() < k_epsilon || halving + 1 == k_most_halvings) throw;
       }
       step *= 0.5;
     }
@@ -178,7 +174,7 @@ class BalanceSearch {
   /// True if a trial at the end of a step of that length is accepted.
   [[nodiscard]] bool is_nearer(double length) const {
     // A net force below round-off needs no damping, which would keep an idle contact from moving.
-    if (p_.centre().force().norm() < std::max(error_, noise_) || length < k_round_off) return true;
+    if (p_.centre().force().norm() < std::max(error_, noise_) || length < k_epsilon) return true;
     // While soft contacts come to balance, stiff ones may raise the net force: the length of the step that remains is
     // the better measure. With a peeling edge, it might lead to another equilibrium.
     return is_only_one_ && p_.centre().step_of_kept().norm() < 0.5 * step_size_;
@@ -408,7 +404,7 @@ bool approach_balance(Particle& p, double xi, std::span<double> y) {
   p.evaluate(xi, y);
   CentreVector step = p.centre().step();
   const CentreVector before = centre_of(y, count);
-  for (; step.norm() > k_round_off; step *= 0.5) {
+  for (; step.norm() > k_epsilon; step *= 0.5) {
     set_centre(y, count, before + step);
     try {
       p.evaluate(xi, y);

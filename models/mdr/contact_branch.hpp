@@ -6,6 +6,7 @@
 
 #include "mdr/adhesive_edge.hpp"
 #include "mdr/contact.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 
@@ -20,9 +21,6 @@ enum class Regime { open, elastic, fully_plastic, unloading, separated };
 [[nodiscard]] constexpr bool touches(Regime regime) noexcept {
   return regime != Regime::open && regime != Regime::separated;
 }
-
-/// Overlaps over R0 below this are round-off of lengths of the order of R0.
-inline constexpr double k_resolution = 1e-12;
 
 /// Material and rules that all contacts of a particle share.
 struct ContactLaw {

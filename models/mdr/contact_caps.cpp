@@ -41,7 +41,7 @@ std::optional<DomainEnd> ContactCaps::meet_at_once(const Particle& p, std::vecto
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const double distance = both_touch(p, k) ? guard(p, k) : -1.0;
     if (distance < -k_parted) pairs_[k].have_met = false;
-    if (distance < -k_touch || pairs_[k].have_met) continue;
+    if (distance < -k_zero_guard || pairs_[k].have_met) continue;
     if (const auto limit = meet(k, p.at().r, log)) end = limit;
   }
   return end;

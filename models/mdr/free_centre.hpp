@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contacts/centre/centre_lines.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 
@@ -32,8 +33,6 @@ struct CentreStiffness {
 
 class FreeCentre {
  public:
-  static constexpr double k_no_direction = contacts::CentreLines::k_no_direction;
-
   FreeCentre() = default;
   /// @param is_free  false: nothing moves the centre
   FreeCentre(std::span<const ContactClass> classes, bool is_free) : lines_(classes, is_free), loads_(lines_.size()) {}

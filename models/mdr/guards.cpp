@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mdr/centre_search.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -90,7 +91,7 @@ void GuardSet::arm(Particle& p, const ContactCaps& caps, double xi, std::span<co
   arm_growth(p, now);
   for (std::size_t k = 0; k < caps.pairs().size(); ++k) {
     // Caps that have just met may be a round-off short of zero, and would meet again at once.
-    if (!caps.pairs()[k].have_met && caps.both_touch(p, k) && caps.guard(p, k) < -k_touch) {
+    if (!caps.pairs()[k].have_met && caps.both_touch(p, k) && caps.guard(p, k) < -k_zero_guard) {
       list_.push_back({k_caps, static_cast<int>(k), 1, "caps-intersect"});
     }
   }
@@ -248,7 +249,7 @@ double tension_guard(const Particle& p, int kind, std::size_t i, const Motion& n
 double retreat_guard(Particle& p, std::size_t i, double xi, std::span<const double> y, const Motion& now) {
   if (p.mode.loads_on[i]) return rate_if_unloaded(p, i, xi, y);
   // The rate of an idle contact next to a moving centre is round-off, of either sign.
-  return p.is_idle(i) ? 1.0 : primary_branch_rate(p, i, now) + 2.0 * k_touch;
+  return p.is_idle(i) ? 1.0 : primary_branch_rate(p, i, now) + 2.0 * k_zero_guard;
 }
 
 double lost_guard(const Particle& p, std::size_t i, double xi) {

@@ -8,6 +8,7 @@
 #include "mdr/contact_caps.hpp"
 #include "mdr/particle.hpp"
 #include "system/hybrid_system.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 
@@ -38,8 +39,6 @@ enum GuardKind : int {
   k_centre_reached
 };
 
-/// A guard this near to zero, and moving on, counts as crossed when a mode is decided.
-inline constexpr double k_touch = 1e-13;
 /// Rate of a contact's force, in the unit of force_rate(), that is round-off.
 inline constexpr double k_steady_force = 1e-9;
 /// Rate, of order one elsewhere, below which a wall or an edge is at rest: just after it has turned, its rate is an

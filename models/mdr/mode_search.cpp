@@ -10,6 +10,7 @@
 #include "mdr/guards.hpp"
 #include "mdr/support.hpp"
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -22,8 +23,6 @@ constexpr double k_passed = 1e-2;
 constexpr double k_passed_by_force = 1e-6;
 // Change of an overlap at one instant (over R0) beyond which the free centre has jumped to another equilibrium.
 constexpr double k_spring = 1e-9;
-// If the demand for growth is balanced at an instant, its sign is evaluated this far later (in step coordinates).
-constexpr double k_just_after = 1e-9;
 
 /// Erases the events of contact i from the log, from index `from` on.
 void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
@@ -65,8 +64,8 @@ std::optional<Diagnostic> check_adhesion(const Particle& p, std::size_t i) {
 /// Distance of an elastic contact from its yield overlap, over that overlap, at which the contact counts as yielding.
 /// Contacts that balance each other on a free centre yield together; their overlaps agree to the round-off of lengths.
 double nearness_of_yield(const Particle& p, std::size_t i) noexcept {
-  if (!p.centre().acts(i)) return k_touch;
-  return std::max(k_touch, std::min(k_together, k_resolution / p.law().material.yield_overlap_ratio));
+  if (!p.centre().acts(i)) return k_zero_guard;
+  return std::max(k_zero_guard, std::min(k_together, k_resolution / p.law().material.yield_overlap_ratio));
 }
 
 }  // namespace
@@ -369,10 +368,10 @@ bool ModeSearch::wants_growth(double xi, std::span<double> y) {
     is_singular = is_singular || (p_.is_loaded(i) && p_.takes_part(i) && p_.drive(i).rate() > 0.0 &&
                                   !(p_.contact(i).contact.by_overlap > 0.0));
   }
-  if (is_singular || std::abs(drive) <= k_touch) {
+  if (is_singular || std::abs(drive) <= k_zero_guard) {
     // The demand is zero to within round-off, or undefined: its sign just after this instant decides.
-    p_.move_walls(xi + k_just_after, y);
-    p_.evaluate(xi + k_just_after, y);
+    p_.move_walls(xi + k_ahead, y);
+    p_.evaluate(xi + k_ahead, y);
     drive = growth_drive(p_, p_.motion(false));
     p_.move_walls(xi, y);
     p_.evaluate(xi, y);
@@ -455,12 +454,12 @@ ModeSearch::Tendency ModeSearch::tendency(std::size_t i, double xi, const Motion
   const double of_overlap = overlap_rate(p_, i, now);
   Tendency result;
   // At the very start of growth the rate of the radius is zero, and about to become positive.
-  result.is_carried = p_.mode.is_growing && !is_loaded && of_wall >= -k_touch;
-  result.moves_in = of_overlap > k_touch || result.is_carried;
-  const bool moves_out = of_overlap < -k_touch && !result.is_carried;
+  result.is_carried = p_.mode.is_growing && !is_loaded && of_wall >= -k_zero_guard;
+  result.moves_in = of_overlap > k_zero_guard || result.is_carried;
+  const bool moves_out = of_overlap < -k_zero_guard && !result.is_carried;
   const bool is_shifted = p_.law().is_shifted();
-  result.retreats = !p_.mode.loads_on[i] && (is_shifted ? of_wall < -k_touch : moves_out);
-  result.advances = is_shifted ? of_wall > k_touch : result.moves_in;
+  result.retreats = !p_.mode.loads_on[i] && (is_shifted ? of_wall < -k_zero_guard : moves_out);
+  result.advances = is_shifted ? of_wall > k_zero_guard : result.moves_in;
   // A falling force that vanishes together with another event, within the tolerance of that, no longer presses.
   const bool is_vanishing =
       p_.drive(i).rate() < 0.0 && contact_guard(p_, k_made, i, xi, p_.contact(i).overlap) < k_together;
@@ -468,8 +467,8 @@ ModeSearch::Tendency ModeSearch::tendency(std::size_t i, double xi, const Motion
   // A dent opens and closes at its own depth, which changes with the radius too.
   const bool is_dent = branch.regime == Regime::unloading || branch.regime == Regime::separated;
   const double of_dent = is_dent && !is_loaded ? edge_rate(p_, i, now) : of_overlap;
-  result.closes = of_dent > k_touch || result.is_carried;
-  result.opens = of_dent < -k_touch && !result.is_carried;
+  result.closes = of_dent > k_zero_guard || result.is_carried;
+  result.opens = of_dent < -k_zero_guard && !result.is_carried;
   return result;
 }
 
@@ -479,7 +478,7 @@ bool ModeSearch::resolve_contact(std::size_t i, double xi, std::span<double> y, 
                                  std::vector<Event>& log) {
   const Tendency tends = tendency(i, xi, now);
   const double overlap = p_.contact(i).overlap;
-  const auto closes_at = [&](GuardKind kind) { return contact_guard(p_, kind, i, xi, overlap) >= -k_touch; };
+  const auto closes_at = [&](GuardKind kind) { return contact_guard(p_, kind, i, xi, overlap) >= -k_zero_guard; };
   const std::string_view why = xi == 0.0 ? "load-reversal" : "retreat";
   switch (p_.branch(i).regime) {
     case Regime::open:
@@ -511,7 +510,7 @@ bool ModeSearch::resolve_elastic(std::size_t i, double xi, const Tendency& tends
   const double overlap = p_.contact(i).overlap;
   const bool retreats = branch.is_on_primary_branch && tends.retreats;
   const bool is_idle = p_.is_idle(i);
-  const bool is_past_opening = is_idle && tends.opens && contact_guard(p_, k_lost, i, xi, overlap) <= k_touch;
+  const bool is_past_opening = is_idle && tends.opens && contact_guard(p_, k_lost, i, xi, overlap) <= k_zero_guard;
   // A prescribed force that begins to pull before the contact has carried any load finds no edge that could stick.
   const bool is_unborne = !is_idle && retreats && p_.is_loaded(i) && !tends.is_pressed && overlap < k_resolution;
   if (is_past_opening || is_unborne) {
@@ -537,9 +536,9 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
                                        const Tendency& tends, std::vector<Event>& log) {
   const double overlap = p_.contact(i).overlap;
   const double passed = tends.advances ? contact_guard(p_, k_reload, i, xi, overlap) : -1.0;
-  if (passed >= -k_touch) {
+  if (passed >= -k_zero_guard) {
     // The rate of a contact that has turned at this instant is round-off, of either sign: the contact does not reload.
-    if (!has_turned_[i] || primary_branch_rate(p_, i, now) > k_at_rest || passed > k_touch) {
+    if (!has_turned_[i] || primary_branch_rate(p_, i, now) > k_at_rest || passed > k_zero_guard) {
       has_resumed_[i] = has_turned_[i];
       p_.set_branch(i, p_.branch(i).reloaded());
       log.push_back(event_of("reload", i));
@@ -551,7 +550,7 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
   if (p_.law().adheres()) return resolve_edge(i, xi, y, now, tends.is_carried, log);
   // A contact that no force presses during the whole step may end at once; it does not wait for growth to open it.
   const bool is_let_go = p_.is_loaded(i) && p_.drive(i).start() <= 0.0 && p_.drive(i).end() <= 0.0;
-  if ((tends.opens || is_let_go) && contact_guard(p_, k_lost, i, xi, overlap) <= k_touch) {
+  if ((tends.opens || is_let_go) && contact_guard(p_, k_lost, i, xi, overlap) <= k_zero_guard) {
     p_.lose(i);
     log.push_back(event_of("contact-lost", i));
     return true;
@@ -568,7 +567,7 @@ bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, con
   const bool moves_out = rate < -k_at_rest && !is_carried;
   const double overlap = p_.contact(i).overlap;
   const auto is_past = [&](GuardKind kind, double sign) {
-    return sign * edge_guard(p_, kind, i, xi, overlap) >= -k_touch;
+    return sign * edge_guard(p_, kind, i, xi, overlap) >= -k_zero_guard;
   };
   // The rate of a contact that has turned at this instant is round-off, of either sign: its edge is at rest.
   const bool is_at_rest = has_turned_[i] && std::abs(overlap_rate(p_, i, now)) <= k_at_rest;

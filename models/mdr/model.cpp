@@ -3,20 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "elastic/hertz.hpp"
 #include "mdr/adhesion_map.hpp"
 #include "stress/checks.hpp"
 #include "stress/draw.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
 
 using std::string_view;
-
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 constexpr std::array k_material{
     QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},

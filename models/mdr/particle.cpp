@@ -9,6 +9,7 @@
 #include "mdr/guards.hpp"
 #include "mdr/support.hpp"
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -393,7 +394,7 @@ double edge_rate(const Particle& p, std::size_t i, const Motion& motion) {
   if (is_being_made) overlap_speed = p.drive(i).rate();
   if (is_being_made || motion.growth == 0.0) {
     // If a free centre keeps up with the wall, the difference of their speeds is round-off, of either sign.
-    const double rounding = p.is_loaded(i) ? 0.0 : k_touch * (std::abs(now.rate_by_time) + motion.centre.norm());
+    const double rounding = p.is_loaded(i) ? 0.0 : k_zero_guard * (std::abs(now.rate_by_time) + motion.centre.norm());
     return overlap_speed > rounding ? 1.0 : overlap_speed < -rounding ? -1.0 : 0.0;
   }
   return p.branch(i).press_rate(p.law(), p.at().r, now.overlap, now.contact.contact_radius, overlap_speed,
@@ -425,7 +426,7 @@ bool gate_is_open(const Particle& p, const Motion& motion) {
     if (!p.takes_part(i)) continue;
     // Next to stiff contacts the rate of an idle contact loses digits.
     const GrowthDrive drive{.inward_rate = inward_rate(p, i, motion),
-                            .least_rate = (p.is_idle(i) ? k_at_rest : k_touch) * p.speed_scale(),
+                            .least_rate = (p.is_idle(i) ? k_at_rest : k_zero_guard) * p.speed_scale(),
                             .is_force_controlled = p.is_loaded(i),
                             .rises = p.drive(i).rate() > 0.0,
                             .is_on_primary_branch = p.branch(i).is_on_primary_branch};

@@ -12,7 +12,7 @@
 
 #include "contacts/wall_drive.hpp"
 #include "mdr/setup.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 

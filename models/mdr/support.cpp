@@ -11,6 +11,7 @@
 #include "mdr/guards.hpp"
 #include "reaction_cone.hpp"
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -20,8 +21,6 @@ constexpr double k_balanced = 1e-10;
 // Gap, over the displacement of the centre under a push, from which on the centre has left a wall.
 constexpr double k_moved_away = 1e-6;
 constexpr int k_most_steps_of_search = 200;
-// Stiffness, over that of the stiffest direction, below which a direction counts as unconstrained.
-constexpr double k_no_stiffness_ratio = 1e-12;
 
 /// Wall of an idle contact: it can push a free centre, but not pull it.
 struct IdleWall {
@@ -35,7 +34,7 @@ Eigen::Matrix3d measure_by_overlaps(std::span<const Eigen::Vector3d> normals, st
   Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < normals.size(); ++k) held += weights[k] * normals[k] * normals[k].transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(held);
-  const double least = k_no_stiffness_ratio * directions.eigenvalues().maxCoeff();
+  const double least = k_no_stiffness * directions.eigenvalues().maxCoeff();
   const Eigen::Vector3d lengths =
       directions.eigenvalues().unaryExpr([=](double value) { return value > least ? 1.0 / std::sqrt(value) : 0.0; });
   return lengths.asDiagonal() * directions.eigenvectors().transpose();
@@ -137,10 +136,10 @@ bool push_out(const Particle& p, std::span<const IdleWall> walls, const CentreMa
   for (std::size_t k = 0; k < walls.size(); ++k) {
     const CentreVector& normal = p.centre().direction(walls[k].contact);
     const double rate = walls[k].rate + normal.dot(now);
-    if (rate <= k_touch * (1.0 + now.norm())) continue;
+    if (rate <= k_zero_guard * (1.0 + now.norm())) continue;
     const CentreVector path = along * normal;
     const double share = path.squaredNorm();
-    if (!(share > FreeCentre::k_no_direction * FreeCentre::k_no_direction)) return false;
+    if (!(share > k_no_direction * k_no_direction)) return false;
     now = velocity - path * ((walls[k].rate + normal.dot(velocity)) / share);
     if (!push_out(p, walls.first(k), along - path * path.transpose() / share, now)) return false;
   }
@@ -182,7 +181,7 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
   for (const IdleWall& wall : walls) normals.emplace_back(along * p.centre().direction(wall.contact));
   std::vector<CentreVector> units;
   for (const CentreVector& normal : normals) {
-    if (normal.norm() > FreeCentre::k_no_direction) units.push_back(normal.normalized());
+    if (normal.norm() > k_no_direction) units.push_back(normal.normalized());
   }
   if (!in_reaction_cone(push, units)) return false;
   std::vector<double> weights;

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "packing/model.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::packing {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <variant>
@@ -14,6 +13,7 @@
 #include "plastic/system.hpp"
 #include "stress/checks.hpp"
 #include "stress/draw.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::plastic {
 namespace {
@@ -219,7 +219,6 @@ constexpr double k_deepest = 0.9;
 constexpr double k_shallowest = 1e-12;
 // Bisections that refine the displacement: next to the limit, work may grow by orders over a tenth of the path.
 constexpr int k_bisections = 20;
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 /// Configuration of a scenario. Other sets of walls count as simple: the law that allows them treats each wall by
 /// itself.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "system/number_text.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::plastic {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <limits>
 #include <stdexcept>
 
 #include "api/checked.hpp"
@@ -13,16 +12,15 @@
 #include "scenario/faults.hpp"
 #include "scenario/words.hpp"
 #include "study/formula/expression.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
-constexpr double k_undefined = std::numeric_limits<double>::quiet_NaN();
-
 /// Value of a formula over a history; NaN if the history has no rows, or the value is undefined.
 /// @throws std::invalid_argument if the formula has a value for each row, or contains an unknown name
 double value_of(const Expression& formula, std::string_view text, const Table& history) {
-  if (history.row_count() == 0) return k_undefined;
+  if (history.row_count() == 0) return k_nan;
   try {
     const std::vector<double> values =
         formula.evaluate([&](std::string_view name) -> std::optional<std::vector<double>> {
@@ -101,7 +99,7 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
   }
   const LeftOut left_out = not_needed_by(expressions);
   const std::size_t count = samples.size() / width;
-  MapResult result{std::vector<double>(count * formulas.size(), k_undefined), std::vector<std::string>(count),
+  MapResult result{std::vector<double>(count * formulas.size(), k_nan), std::vector<std::string>(count),
                    std::vector<std::string>(count)};
   std::atomic<bool> ends = false;
   for_each_index(count, thread_count(options.threads), [&](std::size_t i, std::size_t thread) {

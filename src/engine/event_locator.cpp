@@ -10,14 +10,13 @@
 #include <optional>
 #include <stdexcept>
 
+#include "system/resolution.hpp"
+
 namespace monograin {
 namespace {
 
 // Between evaluations nearer to each other than this (step coordinates), guards are not searched for two crossings.
 constexpr double k_smallest_hidden = 1e-6;
-// Evaluations before the end of a branch: ratio of successive distances from that end, and their number.
-constexpr double k_approach = 0.25;
-constexpr std::size_t k_looks_before_end = 12;
 // A guard counts as zero at its root below k_rounding_of_guard times the larger of its values at the bracket's ends,
 // and below k_most_of_guard times the smaller one.
 constexpr double k_rounding_of_guard = 1e-14;
@@ -25,8 +24,6 @@ constexpr double k_most_of_guard = 1e-12;
 // First distance, over xi, by which a root short of zero is moved on.
 constexpr double k_rounding_of_root = 1e-15;
 constexpr double k_share_of_progress = 1e-2;  // width of the bracket of a root, over least_progress()
-// Distance ahead (step coordinates) at which the sign of a guard that begins at zero is read.
-constexpr double k_ahead = 1e-9;
 
 bool crosses(int direction, double before, double after) noexcept {
   if (direction > 0) return before < 0.0 && after >= 0.0;
@@ -37,7 +34,7 @@ bool crosses(int direction, double before, double after) noexcept {
 }  // namespace
 
 EventLocator::EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t looks)
-    : system_(system), guard_set_(guard_set), most_looks_(looks + k_looks_before_end) {
+    : system_(system), guard_set_(guard_set), most_looks_(looks + k_evaluations_before_end) {
   for (auto* state : {&begin_state_, &end_state_, &guess_}) state->resize(system.unknowns().size());
 }
 
@@ -238,8 +235,8 @@ bool EventLocator::is_branch_end(std::size_t guard) const {
 /// Evaluates the guards between xi = last and the end that a root has given the piece, ever nearer to the end.
 void EventLocator::look_up_to(double last) {
   double distance = end_ - last;
-  for (std::size_t look = 0; look < k_looks_before_end; ++look) {
-    distance *= k_approach;
+  for (std::size_t look = 0; look < k_evaluations_before_end; ++look) {
+    distance *= k_approach_to_end;
     if (distance < least_progress(end_)) return;
     try {
       state_at(end_ - distance, guess_);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/integrator.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 
@@ -24,9 +25,6 @@ class EventLocator : public Integrator {
 
   /// Pieces shorter than this (step coordinates) have no evaluations inside: guards near zero are round-off there.
   static constexpr double k_smallest_looked_into = 1e-6;
-  /// Largest value of a guard that is zero to within round-off. Errors of an integrator are larger and do not count as
-  /// zero: a short regime may lie within them.
-  static constexpr double k_zero_guard = 1e-13;
 
   /// Starts a segment at xi: stores the state, evaluates the guards and finds which side of zero each one is on.
   void begin_segment(double xi, std::span<const double> y);

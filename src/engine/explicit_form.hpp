@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "engine/integrator.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 
@@ -118,11 +118,10 @@ class ExplicitForm {
   /// Copies to `integrated` the differential unknowns that completing has moved by more than round-off.
   /// @return true if there are any
   [[nodiscard]] bool take_correction(std::span<const double> complete, std::span<double> integrated) const {
-    constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
     bool is_moved = false;
     for (std::size_t k = 0; k < size_; ++k) {
       if (unknown(k).kind != Unknown::Kind::differential) continue;
-      if (std::abs(integrated[k] - complete[k]) <= k_rounding * std::abs(complete[k])) continue;
+      if (std::abs(integrated[k] - complete[k]) <= k_round_off * std::abs(complete[k])) continue;
       integrated[k] = complete[k];
       is_moved = true;
     }

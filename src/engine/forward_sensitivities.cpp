@@ -9,20 +9,17 @@
 
 #include "engine/explicit_form.hpp"
 #include "scenario/integrators.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
-// Difference of step coordinates below which two instants are the same.
-constexpr double k_one_instant = 1e-12;
 // Guards that fire together in the base have to fire together in a neighbour: largest difference of their instants
 // there, over the distance that the neighbour moves to its event.
 constexpr double k_together = 1e-4;
 // Largest distance of a neighbour from the base, over the size of an unknown: curvature then leaves an error of 1e-6 in
 // a derivative.
 constexpr double k_farthest = 1e-3;
-// Largest value of a guard that is zero to within round-off.
-constexpr double k_zero_guard = 1e-12;
 // A neighbour's root is located once a secant step (step coordinates) is shorter than this.
 constexpr double k_located = 1e-15;
 constexpr int k_most_secant_steps = 30;
@@ -354,7 +351,7 @@ void ForwardSensitivities::go_to_guard(Side& side, std::span<const std::size_t> 
     }
     if (j == 0) static_cast<void>(guard_at(length, fired[j]));
   }
-  if (side.xi > 1.0 + k_one_instant || side.xi < side.begin - k_one_instant) {
+  if (side.xi > 1.0 + k_same_value || side.xi < side.begin - k_same_value) {
     throw LostSensitivities(
         fmt::format("a neighbouring run does not pass event '{}' there", side.guard_set.name(fired.front())));
   }
@@ -476,7 +473,7 @@ void ForwardSensitivities::add_rounding_to_row(Number& number) {
     side.system().rates(side.xi, side.y, side.rates);
     if (!all_finite(side.rates)) return;
     observe(side);
-    for (const double length : {-k_rounding_of_xi, k_rounding_of_xi}) {
+    for (const double length : {-k_round_off, k_round_off}) {
       for (std::size_t i = 0; i < state_.size(); ++i) state_[i] = side.y[i] + length * side.rates[i];
       side.system().complete(side.xi + length, state_);
       side.system().observe(side.xi + length, state_, values_[0]);

@@ -14,6 +14,7 @@
 
 #include "engine/c_library.hpp"
 #include "engine/stepper.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -62,7 +63,7 @@ class ErrorControl {
   }
 
   [[nodiscard]] double tolerated(double value, double rate) const noexcept {
-    return std::max(rtol_ * std::abs(value) + atol_, k_rounding_of_xi * std::abs(rate));
+    return std::max(rtol_ * std::abs(value) + atol_, k_round_off * std::abs(rate));
   }
 
   static int level(void* self, const double value, const double rate, const double, const size_t, double* tolerated) {

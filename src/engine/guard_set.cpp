@@ -4,11 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "system/resolution.hpp"
+
 namespace monograin {
 
 bool equals_target(double value, double target) noexcept {
-  constexpr double k_equal = 1e-9;
-  return std::abs(value - target) <= k_equal * std::max(std::abs(value), std::abs(target));
+  return std::abs(value - target) <= k_same_number * std::max(std::abs(value), std::abs(target));
 }
 
 void GuardSet::begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y) {

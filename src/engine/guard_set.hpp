@@ -22,6 +22,11 @@ struct Condition {
 /// True if a quantity counts as equal to the target of a condition: within 1e-9 of the larger magnitude.
 [[nodiscard]] bool equals_target(double value, double target) noexcept;
 
+/// Evaluations of guards before the end of a branch of solutions: their number, and the ratio of successive distances
+/// from that end.
+inline constexpr std::size_t k_evaluations_before_end = 12;
+inline constexpr double k_approach_to_end = 0.25;
+
 class GuardSet {
  public:
   explicit GuardSet(HybridSystem& system) : system_(system) {}

@@ -13,6 +13,7 @@
 
 #include "engine/sundials.hpp"
 #include "engine/sundials_sensitivities.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -202,7 +203,7 @@ class Ida final : public Integrator {
   void raise_tolerances() {
     const auto rates = view(dy_.get());
     for (std::size_t k = 0; k < rates.size(); ++k) {
-      const double rounding = k_rounding_of_xi / k_left_by_corrector * std::abs(rates[k]);
+      const double rounding = k_round_off / k_left_by_corrector * std::abs(rates[k]);
       double& atol = view(atol_.get())[k];
       if (std::isfinite(rounding)) atol = std::max(atol, rounding);
     }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "engine/guard_set.hpp"
 #include "scenario/integrators.hpp"
 #include "system/hybrid_system.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 
@@ -69,9 +69,6 @@ class SolverError : public std::runtime_error {
 /// Length (step coordinates) below which a step that leaves the domain of the equations has reached the domain's
 /// boundary. The length shrinks towards the beginning of a step of the program, where a contact may be that shallow.
 [[nodiscard]] inline double least_progress(double xi) noexcept { return 1e-13 * std::max(xi, 1e-7); }
-
-/// Round-off of the step coordinate: no quantity is known better than its rate times this.
-inline constexpr double k_rounding_of_xi = 4.0 * std::numeric_limits<double>::epsilon();
 
 /// Internal steps of one step of the program after which it is given up.
 inline constexpr long k_most_internal_steps = 200'000;

@@ -14,6 +14,7 @@
 
 #include "engine/stepper.hpp"
 #include "numerics/rosenbrock.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -86,7 +87,7 @@ class Tolerated {
     double largest = 0.0;
     for (std::size_t k = 0; k < size_; ++k) {
       const double tolerated =
-          std::max(of_step_.atol + of_step_.rtol * std::abs(begin[k]), k_rounding_of_xi * std::abs(rates_[k]));
+          std::max(of_step_.atol + of_step_.rtol * std::abs(begin[k]), k_round_off * std::abs(rates_[k]));
       largest = std::max(largest, std::abs(error(k)) / tolerated);
     }
     return largest;
@@ -218,7 +219,7 @@ struct RoundedOperations : odeint::default_operations {
 
     void operator()(double& error, double old, double rate) const {
       const double tolerated =
-          std::max(this->m_eps_abs + this->m_eps_rel * std::abs(old), k_rounding_of_xi * std::abs(rate));
+          std::max(this->m_eps_abs + this->m_eps_rel * std::abs(old), k_round_off * std::abs(rate));
       error = std::abs(error) / tolerated;
     }
   };
@@ -360,7 +361,7 @@ class RosenbrockStepper final : public Stepper {
         jacobian_(form),
         size_(form.size()),
         method_({size_ + 1, rates, jacobian, this}, of_step(tolerances, k_share_of_many).atol,
-                of_step(tolerances, k_share_of_many).rtol, k_rounding_of_xi),
+                of_step(tolerances, k_share_of_many).rtol, k_round_off),
         start_(size_ + 1),
         by_z_(size_ * size_),
         by_xi_(size_),

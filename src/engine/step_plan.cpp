@@ -8,11 +8,10 @@
 #include <optional>
 #include <string_view>
 
+#include "system/resolution.hpp"
+
 namespace monograin {
 namespace {
-
-// Relative difference below which the durations of two walls are equal: all walls end a step together.
-constexpr double k_same_duration = 1e-9;
 
 /// A quantity of a condition: its word in scenario files and its unit.
 struct QuantityWords {
@@ -83,7 +82,7 @@ StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> h
     const double duration =
         of_channel.duration ? *of_channel.duration : std::abs(ramp.end - ramp.start) / *of_channel.rate;
     if (plan.duration >= 0.0 &&
-        std::abs(duration - plan.duration) > k_same_duration * std::max(duration, plan.duration)) {
+        std::abs(duration - plan.duration) > k_same_number * std::max(duration, plan.duration)) {
       throw Stop{{.limit = Limit::unequal_durations},
                  fmt::format("step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
                              "together; give equal durations",

@@ -132,9 +132,9 @@ class Stepped final : public EventLocator {
 };
 
 // Increments of difference quotients: k_share_of_step keeps them well within the step for which they are meant,
-// k_resolution (over xi) well above the round-off of xi.
+// k_least_increment (over xi) well above the round-off of xi.
 constexpr double k_share_of_step = 0.1;
-constexpr double k_resolution = 1e-14;
+constexpr double k_least_increment = 1e-14;
 const double k_cubic_root = std::cbrt(std::numeric_limits<double>::epsilon());
 constexpr double k_least_size = 1e-2;  // least size of an unknown, over its scale, that scales its increment
 
@@ -225,7 +225,7 @@ class FixedStep final : public Integrator {
 }  // namespace
 
 double DifferenceJacobian::reach(double xi, double length) noexcept {
-  return 2.0 * std::max(std::min(k_cubic_root, k_share_of_step * length), k_resolution * xi);
+  return 2.0 * std::max(std::min(k_cubic_root, k_share_of_step * length), k_least_increment * xi);
 }
 
 void DifferenceJacobian::at(double xi, std::span<const double> z, double length, std::span<double> jacobian,

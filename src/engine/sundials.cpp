@@ -14,9 +14,6 @@
 namespace monograin::sundials_boundary {
 namespace {
 
-// Evaluations before the end of a branch: ratio of successive distances from that end, and their number.
-constexpr double k_approach = 0.25;
-constexpr int k_looks_before_end = 12;
 // Accuracy of the libraries' roots, over the sum of the end and the length of the step.
 constexpr double k_rounding_of_root = 100.0 * std::numeric_limits<double>::epsilon();
 
@@ -51,8 +48,8 @@ std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, c
     values_at(begin, before);
     double last = begin;
     double distance = end - begin;
-    for (int look = 0; look < k_looks_before_end && !first; ++look) {
-      distance *= k_approach;
+    for (std::size_t k = 0; k < k_evaluations_before_end && !first; ++k) {
+      distance *= k_approach_to_end;
       if (distance < least_progress(end)) break;
       const double now = end - distance;
       values_at(now, after);

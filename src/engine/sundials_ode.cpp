@@ -8,13 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
 #include "engine/forward_sensitivities.hpp"
 #include "engine/sundials.hpp"
 #include "engine/sundials_sensitivities.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -303,7 +303,7 @@ class SundialsOde final : public Integrator {
   /// Evaluates the rates one round-off of xi after the start. If a contact is as shallow as that round-off, its rates
   /// at first touch are negligible beside those at the next representable xi.
   void find_first_rates() {
-    start_end_ = std::min(1.0, end_ * (1.0 + k_rounding_of_xi));
+    start_end_ = std::min(1.0, end_ * (1.0 + k_round_off));
     first_guess_.assign(form_.guess().begin(), form_.guess().end());
     try {
       ++for_jacobian_;
@@ -382,7 +382,7 @@ class SundialsOde final : public Integrator {
     bool is_off = false;
     for (std::size_t k = 0; k < state.size(); ++k) {
       const double size = std::max(std::abs(state[k]), form_.unknown(k).scale);
-      const double rounding = k_rounding_of_xi * std::abs(view(rates_.get())[k]) / k_share_of_many;
+      const double rounding = k_round_off * std::abs(view(rates_.get())[k]) / k_share_of_many;
       is_off = is_off || std::abs(better[k] - state[k]) > std::max(tolerances_.rtol * size, rounding);
     }
     if (is_off) std::ranges::copy(better, state.begin());
@@ -413,7 +413,6 @@ class SundialsOde final : public Integrator {
   /// that the step could use.
   static int jacobian(realtype xi, N_Vector y, N_Vector dy, SUNMatrix matrix, void* self, N_Vector shifted, N_Vector,
                       N_Vector) noexcept {
-    constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
     static const double k_root = std::sqrt(k_epsilon);
     auto& ode = *static_cast<SundialsOde*>(self);
     double step = 0.0;
@@ -460,7 +459,7 @@ class SundialsOde final : public Integrator {
       const double tolerated = ode.of_step_.rtol * std::abs(view(y)[k]) + view(ode.atol_.get())[k];
       const double first = is_first ? std::abs(view(ode.first_rates_.get())[k]) : 0.0;
       const double rate = std::max(first, std::abs(view(ode.rates_.get())[k]));
-      view(weights)[k] = 1.0 / std::max(tolerated, k_rounding_of_xi * rate);
+      view(weights)[k] = 1.0 / std::max(tolerated, k_round_off * rate);
     }
     return 0;
   }

@@ -11,14 +11,13 @@
 #include "catalogue.hpp"
 #include "figure/figure.hpp"
 #include "history/table.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::figure {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k_round_off = 1e-12;  ///< relative excess over a displacement that does not pass it
 constexpr std::string_view k_displacement = ".displacement";
 
 /// A positive number of the header, by which values are divided.
@@ -149,7 +148,7 @@ std::vector<Phase> phases_along(std::span<const double> displacements) {
   double largest = displacements.front();
   for (std::size_t row = 1; row < displacements.size(); ++row) {
     const double step = displacements[row] - displacements[row - 1];
-    const double round_off = k_round_off * std::abs(largest);
+    const double round_off = k_same_value * std::abs(largest);
     if (std::abs(step) <= round_off)
       phases[row] = phases[row - 1];
     else if (step < 0.0)

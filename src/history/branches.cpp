@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -14,7 +14,6 @@ namespace {
 constexpr double k_slope_share = 0.05;    ///< fall of the force that gives the slope, over the force at the reversal
 constexpr double k_same_reversal = 0.01;  ///< largest distance of equal reversals, over their x
 constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< least end of loading with a line, over x of the last reversal
-constexpr double k_round_off = 1e-12;          ///< force that counts as zero, over the force at the reversal
 constexpr double k_same_end = 1e-6;            ///< largest distance beyond the end of a piece that has a value, over x
 constexpr std::size_t k_short_run = 2;         ///< longest path between two turns that may be noise, in rows
 constexpr std::size_t k_least_short_runs = 3;  ///< number of such paths from which on they are noise
@@ -181,7 +180,7 @@ double unloading_slope(const XyCurve& unloading) {
 }
 
 double residual_displacement(const XyCurve& unloading) {
-  const double none = k_round_off * unloading.y.front();
+  const double none = k_same_value * unloading.y.front();
   for (std::size_t k = 1; k < unloading.x.size(); ++k) {
     if (!(unloading.y[k] <= none)) continue;
     if (k < 2) return unloading.x[k];

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "history/compare.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -17,8 +17,6 @@ namespace {
 /// Largest distance of equal jumps, or of equal ends, over the range of x. Events are located about as accurately as
 /// the solution that crosses them.
 constexpr double k_same_event = 1e-6;
-/// Largest reversal of x that is round-off, over the range of x.
-constexpr double k_rounding = 1e-12;
 
 /// Value of the reference at one x and the difference of the other curve; NaN if they cannot be compared there.
 struct Sample {
@@ -101,7 +99,7 @@ struct Curve {
 }
 
 [[nodiscard]] std::vector<Piece> monotone_pieces(const Curve& curve) {
-  const auto turns = turning_rows(curve.x, k_rounding * range_of(curve.x));
+  const auto turns = turning_rows(curve.x, k_same_value * range_of(curve.x));
   std::vector<Piece> pieces;
   for (std::size_t k = 1; k < turns.size(); ++k) pieces.push_back(piece_between(curve, turns[k - 1], turns[k]));
   return pieces;

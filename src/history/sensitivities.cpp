@@ -17,12 +17,11 @@
 #include "history/run.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/integrators.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
-constexpr double k_no_derivative = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_same_instant = 1e-13;  // largest difference of equal instants, over the duration of the history
 constexpr double k_direct_noise = 1e-14;  // relative round-off of states that `direct` solves for
 constexpr double k_finest_rtol = 1e-11;   // upper bounds of the tolerances of runs for differences
 constexpr double k_finest_atol = 1e-14;
@@ -148,13 +147,13 @@ class Differences {
   /// Derivative of a column in a row of the history; NaN if it is undefined.
   [[nodiscard]] double at_row(std::size_t row, std::size_t column) const {
     const auto& [below, above] = partners_[row];
-    if (!below || !above) return k_no_derivative;
+    if (!below || !above) return k_nan;
     return (upper_.record.history.at(*above, column) - lower_.record.history.at(*below, column)) / width_;
   }
 
   /// Derivative of a column of the events at an event, which is compared with the same event of the other runs.
   [[nodiscard]] double at_event(std::size_t row, std::size_t column) const {
-    if (row >= same_events_) return k_no_derivative;
+    if (row >= same_events_) return k_nan;
     return (upper_.record.events.at(row, column) - lower_.record.events.at(row, column)) / width_;
   }
 
@@ -255,7 +254,7 @@ class Widened {
   for (std::size_t row = 0; row < wide.row_count(); ++row) {
     std::vector<double> values(wide.row(row).begin(), wide.row(row).end());
     for (std::size_t k = 0; k < count; ++k) {
-      if (values[width + k] > k_counts * largest[k]) values[width - count + k] = k_no_derivative;
+      if (values[width + k] > k_counts * largest[k]) values[width - count + k] = k_nan;
     }
     values.resize(width);
     table.append(values);
@@ -411,20 +410,17 @@ void add_sensitivities(Run& run, const std::string& why) {
     for (std::size_t column = 0; column < history.columns().size(); ++column) {
       const auto& [name, unit, words] = history.columns()[column];
       if (!words.empty() || column == k_step || column == k_side) continue;
-      const auto value = [&](std::size_t row) {
-        return differences ? differences->at_row(row, column) : k_no_derivative;
-      };
+      const auto value = [&](std::size_t row) { return differences ? differences->at_row(row, column) : k_nan; };
       of_history.add(derivative_column(name, unit, key), value);
       if (differences) error = std::max(error, error_of(*differences, history, column, value, share, step, noise));
     }
     for (std::size_t column = 0; column < events.columns().size(); ++column) {
       const auto& [name, unit, words] = events.columns()[column];
       if (!words.empty() || name == "step") continue;
-      of_events.add(derivative_column(name, unit, key), [&](std::size_t row) {
-        return differences ? differences->at_event(row, column) : k_no_derivative;
-      });
+      of_events.add(derivative_column(name, unit, key),
+                    [&](std::size_t row) { return differences ? differences->at_event(row, column) : k_nan; });
     }
-    run.sensitivities.push_back({key.key, key.value, step, differences ? error : k_no_derivative, false, why});
+    run.sensitivities.push_back({key.key, key.value, step, differences ? error : k_nan, false, why});
   }
   run.record.history = std::move(of_history).table();
   run.record.events = std::move(of_events).table();

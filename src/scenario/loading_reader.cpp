@@ -9,14 +9,12 @@
 #include <utility>
 
 #include "scenario/program_reader.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
 using Configuration = Loading::Configuration;
-
-constexpr double k_same_direction = 1e-9;  // angle between equal directions [rad]
-constexpr double k_same_duration = 1e-9;   // relative difference of equal durations
 
 Configuration to_configuration(const std::string& word) {
   if (word == "die") return Configuration::die;
@@ -184,7 +182,7 @@ class LoadingReader {
       if (!program[k].duration || !expected[k].duration) continue;
       const double a = *program[k].duration;
       const double b = *expected[k].duration;
-      if (std::abs(a - b) <= k_same_duration * std::max(a, b)) continue;
+      if (std::abs(a - b) <= k_same_number * std::max(a, b)) continue;
       reading_.faults.add(program[k].where,
                           fmt::format("step {} of wall '{}' takes {:.9g} s where that of wall '{}' takes {:.9g} s; "
                                       "steps end together, so expected equal durations",

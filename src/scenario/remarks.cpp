@@ -6,11 +6,10 @@
 #include <cmath>
 #include <vector>
 
+#include "system/resolution.hpp"
+
 namespace monograin {
 namespace {
-
-// Relative distance from the program's end within which an output time is at the end.
-constexpr double k_same_instant = 1e-12;
 
 /// Programs of all walls, or the one of a model without walls.
 std::vector<std::vector<Step>> programs_of(const CheckedScenario& scenario) {
@@ -57,7 +56,7 @@ std::optional<std::string> remark_on_times(const CheckedScenario& scenario) {
   const std::vector<double>& times = scenario.output.times;
   const std::optional<double> end = latest_end(scenario);
   if (!end) return std::nullopt;
-  const auto count = std::ranges::count_if(times, [&](double t) { return t > *end * (1.0 + k_same_instant); });
+  const auto count = std::ranges::count_if(times, [&](double t) { return t > *end * (1.0 + k_same_value); });
   if (count == 0) return std::nullopt;
   return fmt::format("{} of {} output times lie{} beyond the end of the program, t = {:.9g} s: no rows there", count,
                      times.size(), count == 1 ? "s" : "", *end);

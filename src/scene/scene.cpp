@@ -10,6 +10,7 @@
 
 #include "catalogue.hpp"
 #include "scenario/model_input.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -77,18 +78,15 @@ constexpr double k_share_of_withdrawal = 1e-4;
 /// ramp may already have met, within that factor, need not end the next ramp.
 constexpr double k_known_within = 3.0;
 
-/// Depth over R0 below which a contact is below resolution; and relative accuracy with which models predict the depth
-/// of a contact under a force or at a condition.
-constexpr double k_least_depth = 1e-12;
+/// Relative accuracy with which models predict the depth of a contact under a force or at a condition.
 constexpr double k_same_depth = 1e-6;
 
 /// True if a free centre may move: it stays at rest if the normals of every class add up to zero.
 bool may_move_centre(const CheckedScenario& scenario, const std::vector<ContactClass>& classes) {
-  constexpr double k_no_push = 1e-6;  // of unit normals
   return scenario.loading.centre_is_free && std::ranges::any_of(classes, [](const ContactClass& c) {
            Eigen::Vector3d sum = Eigen::Vector3d::Zero();
            for (const Eigen::Vector3d& normal : c.normals) sum += normal;
-           return sum.norm() > k_no_push * c.multiplicity();
+           return sum.norm() > k_no_direction * c.multiplicity();
          });
 }
 
@@ -144,7 +142,7 @@ std::size_t first_unloading_step(const Program& program, std::span<const Step> s
           step.target > 0.0 ? end_of(program, {.quantity = Quantity::force, .value = step.target}).displacement : 0.0;
     }
     if (!std::isfinite(depth)) continue;  // ends at a limit of the law
-    if (deepest > k_least_depth * program.input.radius && depth < (1.0 - k_same_depth) * deepest) return k;
+    if (deepest > k_resolution * program.input.radius && depth < (1.0 - k_same_depth) * deepest) return k;
     for (const Until& until : step.until) {
       const bool is_foreseen = until.value > 0.0 || until.is_event();
       depth = is_foreseen ? std::min(depth, (1.0 - k_same_depth) * end_of(program, until).displacement) : 0.0;

@@ -6,12 +6,10 @@
 #include <functional>
 
 #include "scene/scene.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
-
-constexpr double k_same = 1e-9;     // largest difference of equal normals, or of equal scalar products of normals
-constexpr double k_in_span = 1e-6;  // component of a normal outside a span that counts as none
 
 bool same_step(const Step& a, const Step& b) {
   return a.kind == b.kind && a.target == b.target && a.duration == b.duration && a.rate == b.rate && a.until == b.until;
@@ -58,7 +56,7 @@ class Matcher {
     outside -= normals_.col(first) * normals_.col(first).transpose();
     for (Eigen::Index i = 0; i < normals_.cols() && basis_.size() < 3; ++i) {
       const Eigen::Vector3d rest = outside * normals_.col(i);
-      if (rest.norm() <= k_in_span) continue;
+      if (rest.norm() <= k_no_direction) continue;
       basis_.push_back(i);
       outside -= rest.normalized() * rest.normalized().transpose();
     }
@@ -73,7 +71,8 @@ class Matcher {
       if (colour(candidate) != colour(next)) continue;
       bool keeps_products = true;
       for (std::size_t k = 0; k < images_.size(); ++k) {
-        if (std::abs(products_(candidate, images_[k]) - products_(next, basis_[k])) > k_same) keeps_products = false;
+        if (std::abs(products_(candidate, images_[k]) - products_(next, basis_[k])) > k_same_direction)
+          keeps_products = false;
       }
       if (!keeps_products) continue;
       images_.push_back(candidate);
@@ -91,7 +90,7 @@ class Matcher {
       }
       bool lands_on_wall = false;
       for (Eigen::Index j = 0; j < normals_.cols() && !lands_on_wall; ++j) {
-        lands_on_wall = colour(i) == colour(j) && (mapped - normals_.col(j)).norm() < k_same;
+        lands_on_wall = colour(i) == colour(j) && (mapped - normals_.col(j)).norm() < k_same_direction;
       }
       if (!lands_on_wall) return false;
     }

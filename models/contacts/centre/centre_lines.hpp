@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "system/resolution.hpp"
 #include "system/walls.hpp"
 
 namespace monograin::contacts {
@@ -27,9 +28,6 @@ class CentreLines {
   /// Vectors and matrices along the free directions of the centre; entries beyond their number are zero.
   using Vector = Eigen::Vector3d;
   using Matrix = Eigen::Matrix3d;
-  /// Smallest component of a class's mean normal along the free directions that counts. The stiffness goes with the
-  /// square of that component, and is round-off below this.
-  static constexpr double k_no_direction = 1e-6;
 
   CentreLines() = default;
   /// @param is_free  false: nothing moves the centre
@@ -87,7 +85,6 @@ class CentreLines {
   /// @param force      line -> force along it
   template <class Stiffness, class Force>
   [[nodiscard]] Vector step(const Matrix& basis, Stiffness&& stiffness, Force&& force) const {
-    constexpr double k_no_stiffness = 1e-12;  // over the greatest one, each scaled by its own contacts
     Matrix sum = Matrix::Zero();
     Vector load = Vector::Zero();
     Vector magnitudes = Vector::Zero();

@@ -7,11 +7,11 @@
 #include <numeric>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::contacts {
 namespace {
 
-constexpr double k_round_off = 4.0 * std::numeric_limits<double>::epsilon();
 // A wall whose gap (over R0) is below this may meet the centre early in the mode that begins: it is idle, not away.
 constexpr double k_near = 1e-5;
 // Determinant of the stiffness, over the cube of its largest diagonal element, above which the stiffnesses in all
@@ -113,7 +113,7 @@ FreeCentre::Vector FreeCentre::flight(const CentreWalls& walls, std::span<const 
   double distance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     const double approach = lines_.arm(i).dot(path);
-    if (roles[i] != Role::bearing || walls.prescribed_force(i) || approach <= CentreLines::k_no_direction) continue;
+    if (roles[i] != Role::bearing || walls.prescribed_force(i) || approach <= k_no_direction) continue;
     const double gap = std::max(0.0, -(walls.overlap(i) + lines_.arm(i).dot(c)));
     if (gap / approach >= distance) continue;
     nearest = i;
@@ -228,7 +228,7 @@ bool FreeCentre::clear(std::span<const std::size_t> walls, const Matrix& along, 
     if (overlap <= k_round_off) continue;
     const Vector path = along * lines_.arm(i);
     const double share = path.squaredNorm();
-    if (!(share > CentreLines::k_no_direction * CentreLines::k_no_direction)) return false;
+    if (!(share > k_no_direction * k_no_direction)) return false;
     now = c - path * ((gone_in_[i] + lines_.arm(i).dot(c)) / share);
     if (!clear(walls.first(k), along - path * path.transpose() / share, now)) return false;
   }
@@ -244,7 +244,7 @@ bool FreeCentre::clear_all_but(std::optional<std::size_t> left_out, const Centre
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     if (!acts(i) || roles[i] == Role::away || walls.prescribed_force(i) || i == left_out) continue;
     gone_in_[i] = walls.overlap(i);
-    if (!bears_[i] && across_held(i) > CentreLines::k_no_direction) to_clear_.push_back(i);
+    if (!bears_[i] && across_held(i) > k_no_direction) to_clear_.push_back(i);
   }
   Matrix free = Matrix::Zero();
   free.topLeftCorner(dimension(), dimension()).setIdentity();
@@ -291,7 +291,7 @@ void FreeCentre::find_roles(const CentreWalls& now, const CentreWalls& then, Vec
   c = with_loose_directions(then, roles, rest, balance(then, roles, rest), std::nullopt);
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     const bool bears_now = !now.prescribed_force(i) && now.overlap(i) + lines_.arm(i).dot(rest) > k_resolution;
-    if (bears_now || bears_[i] || across_held(i) <= CentreLines::k_no_direction) continue;
+    if (bears_now || bears_[i] || across_held(i) <= k_no_direction) continue;
     const bool is_near = then.prescribed_force(i) || then.overlap(i) + lines_.arm(i).dot(c) > -k_near;
     roles[i] = is_near ? Role::idle : Role::away;
   }

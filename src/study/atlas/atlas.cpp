@@ -21,7 +21,7 @@
 #include "study/atlas/adhesion_panels.hpp"
 #include "study/atlas/definition.hpp"
 #include "study/atlas/profile.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {

@@ -13,7 +13,7 @@
 #include "figure/page.hpp"
 #include "study/atlas/atlas.hpp"
 #include "study/atlas/definition_language.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {

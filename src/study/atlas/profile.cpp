@@ -12,13 +12,12 @@
 #include "figure/run_curves.hpp"
 #include "history/run.hpp"
 #include "scenario/words.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double k_same_instant = 1e-9;  // relative difference of instants that is round-off
 
 /// Keeps the profiles at one output point.
 class ProfileSink final : public HistorySink {
@@ -41,7 +40,7 @@ class ProfileSink final : public HistorySink {
 
   void append(RowSide side) override {
     // The start of the run is an output point, too. An output point at a corner of the program has the corner's time.
-    const bool is_asked_for = std::abs(time_ - instant_) <= k_same_instant * instant_;
+    const bool is_asked_for = std::abs(time_ - instant_) <= k_same_number * instant_;
     if (side != RowSide::output || has_come_ || !is_asked_for) return;
     has_come_ = true;
     for (std::size_t c = 0; c < system_.classes().size(); ++c) {

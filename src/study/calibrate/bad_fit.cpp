@@ -11,12 +11,11 @@
 
 #include "scenario/units.hpp"
 #include "study/calibrate/calibration_language.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
-constexpr double k_same = 1e-9;  // spread of equal values, over their largest magnitude
 constexpr double k_thousand = 1e3;
 
 std::vector<std::size_t> rows_that_count(const Calibration& calibration) {
@@ -55,7 +54,7 @@ std::string_view other_unit(const MeasuredQuantity& quantity, double factor) {
   const double wanted = quantity.unit_factor * factor;
   const auto& units = dimension_info(*dimension).units;
   const auto found =
-      std::ranges::find_if(units, [=](const Unit& u) { return std::abs(u.factor / wanted - 1.0) < k_same; });
+      std::ranges::find_if(units, [=](const Unit& u) { return std::abs(u.factor / wanted - 1.0) < k_same_number; });
   return found == units.end() ? std::string_view() : found->symbol;
 }
 
@@ -116,7 +115,7 @@ std::string measure_of(const Calibration& calibration) {
 
 bool is_constant(const Calibration& calibration) {
   const auto [lowest, highest] = range_of(calibration);
-  return highest - lowest <= k_same * std::max(std::abs(lowest), std::abs(highest));
+  return highest - lowest <= k_same_number * std::max(std::abs(lowest), std::abs(highest));
 }
 
 double explained_share(const Calibration& calibration, double cost) {

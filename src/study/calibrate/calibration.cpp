@@ -14,7 +14,7 @@
 #include "study/calibrate/fit_notes.hpp"
 #include "study/calibrate/response.hpp"
 #include "study/calibrate/thinning.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -26,7 +26,7 @@ constexpr double k_margin_of_rounding = 1e3;
 constexpr double k_bad_condition = 1e3;  // a correlation of 1 - 2e-6
 constexpr std::size_t k_bootstrap_samples = 400;
 constexpr std::uint64_t k_seed = 20260101;
-constexpr double k_same_weight = 1e-9;
+
 constexpr std::size_t k_dense = 800;    // rows; a search with more of them first thins the data
 constexpr std::size_t k_thinned = 400;  // approximate number of rows that are left
 
@@ -106,7 +106,7 @@ class Fit {
       next->evaluations += solution->evaluations;
       next->failures += solution->failures;
       solution = std::move(next);
-      if (std::abs(prior_weight_ - before) <= k_same_weight * prior_weight_) break;
+      if (std::abs(prior_weight_ - before) <= k_same_number * prior_weight_) break;
     }
     return solution;
   }

@@ -12,7 +12,7 @@
 #include "figure/chart.hpp"
 #include "figure/page.hpp"
 #include "study/calibrate/calibration_text.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {

@@ -13,7 +13,7 @@
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/calibration_text.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {

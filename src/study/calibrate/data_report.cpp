@@ -17,7 +17,7 @@
 #include "scenario/words.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/text_table.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {

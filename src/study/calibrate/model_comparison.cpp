@@ -13,7 +13,7 @@
 #include "history/table.hpp"
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/text_table.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {

@@ -10,11 +10,10 @@
 #include "catalogue.hpp"
 #include "engine/drive.hpp"
 #include "scenario/numbers.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
-
-constexpr double k_no_change = 1e-12;  // over the largest value; the engine resolves 1e-13 of a step
 
 constexpr double k_same_force = 1e-6;  // deviation from a prescribed force that counts as none, over the largest
 
@@ -80,7 +79,7 @@ DataProgram program_through(std::span<const double> values, Step::Kind kind, dou
 
   std::vector<double> passed{start};  // values at the instants, beginning with the start's
   for (const double value : values) {
-    if (std::abs(value - passed.back()) > k_no_change * largest) passed.push_back(value);
+    if (std::abs(value - passed.back()) > k_same_value * largest) passed.push_back(value);
     program.rows.push_back(passed.size() - 1);
   }
   for (std::size_t first = 0; first + 1 < passed.size();) {

@@ -5,16 +5,14 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "history/run.hpp"
 #include "scenario/faults.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
-constexpr double k_infinite = std::numeric_limits<double>::infinity();
-constexpr double k_undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double k_fixed_instant = 1e-9;      // change of an instant with the relative change of a number, over the
                                               // duration, below which the instant is fixed
 constexpr double k_direct_error = 1e-13;      // relative error of runs whose states are solved for
@@ -186,7 +184,7 @@ ExpectedErrors expected_errors(const std::vector<FreeParameter>& free, std::span
   ExpectedErrors expected;
   expected.uncertainty =
       uncertainty_of(problem, solution, jacobian / scale, solution.residuals.size(), k_level, 1.0 / scale);
-  expected.log_determinant = expected.relative_variances = k_infinite;
+  expected.log_determinant = expected.relative_variances = k_infinity;
   if (std::ranges::count(expected.uncertainty.is_determined, false) > 0) return expected;
   const Eigen::Map<const Eigen::VectorXd> sizes(values.data(), static_cast<Eigen::Index>(values.size()));
   const Eigen::VectorXd inverse = sizes.cwiseInverse();
@@ -210,14 +208,13 @@ IdentifyResult identify(const ExperimentPlan& plan, const std::function<void()>&
   const bool has_prior =
       std::ranges::any_of(plan.free, [](const auto& free) { return free.prior && free.prior->is_residual(); });
   if (!planned.empty() || has_prior) result.planned = expected_errors(plan.free, plan.values, planned);
-  const double before = result.planned ? result.planned->log_determinant : k_infinite;
+  const double before = result.planned ? result.planned->log_determinant : k_infinity;
   for (std::size_t k = 0; k < plan.programs.size(); ++k) {
     if (plan.programs[k].is_planned) continue;
     std::vector<const ProgramInformation*> together = planned;
     together.push_back(&result.programs[k]);
     CandidateErrors candidate{.program = k, .errors = expected_errors(plan.free, plan.values, together)};
-    candidate.volume =
-        std::isfinite(before) ? std::exp(0.5 * (candidate.errors.log_determinant - before)) : k_undefined;
+    candidate.volume = std::isfinite(before) ? std::exp(0.5 * (candidate.errors.log_determinant - before)) : k_nan;
     result.candidates.push_back(std::move(candidate));
   }
   result.best_by_volume =

@@ -16,7 +16,7 @@
 #include "numerics/quantile.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {

@@ -6,12 +6,12 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include "numerics/parallel.hpp"
 #include "stress/dice.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -22,7 +22,6 @@ constexpr std::size_t k_least_candidates = 1500;
 constexpr std::size_t k_most_clustered_at_once = 1500;
 constexpr std::size_t k_most_draws_per_candidate = 1000;
 constexpr int k_most_enlargements = 8;
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 using Members = std::vector<std::size_t>;  ///< indices of candidates
 

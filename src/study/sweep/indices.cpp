@@ -5,13 +5,12 @@
 #include <random>
 
 #include "numerics/quantile.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
 constexpr std::size_t k_resamples = 500;
-constexpr double k_rounding = 1e-12;  // relative difference from the mean within which results are equal
 
 /// Groups of `size` consecutive results without a missing one, joined together.
 [[nodiscard]] std::vector<double> whole_groups(std::span<const double> results, std::size_t size) {
@@ -78,7 +77,7 @@ SobolIndices sobol_indices(std::span<const double> results, std::size_t factors,
         values[factors + k] += (a - changed) * (a - changed) / (2.0 * n);
       }
     }
-    const bool varies = variance > k_rounding * k_rounding * mean * mean;
+    const bool varies = variance > k_same_value * k_same_value * mean * mean;
     for (double& value : values) value = varies ? value / variance : k_nan;
   };
   std::vector<Estimate> all = bootstrapped(indices.samples, 2 * factors, confidence, estimate);

@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "system/resolution.hpp"
+
 namespace monograin {
 namespace {
 
@@ -38,10 +40,7 @@ class Draw {
 };
 
 /// Moves a share inside the open interval, where every distribution has a value.
-[[nodiscard]] double inside(double share) {
-  constexpr double k_edge = std::numeric_limits<double>::epsilon();
-  return std::clamp(share, k_edge, 1.0 - k_edge);
-}
+[[nodiscard]] double inside(double share) { return std::clamp(share, k_epsilon, 1.0 - k_epsilon); }
 
 [[nodiscard]] Design sequence(const gsl_qrng_type* type, std::size_t factors, std::size_t runs, Draw& draw) {
   const std::unique_ptr<gsl_qrng, decltype(&gsl_qrng_free)> generator(

@@ -17,7 +17,7 @@
 #include "scenario/section.hpp"
 #include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 #include "verify/probe/profiled_system.hpp"
 
 namespace monograin {

@@ -15,7 +15,7 @@
 #include "history/run.hpp"
 #include "history/table.hpp"
 #include "scenario/integrators.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 #include "verify/bench/bench.hpp"
 
 namespace monograin {

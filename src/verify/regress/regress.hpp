@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 

@@ -20,7 +20,7 @@
 #include "catalogue.hpp"
 #include "scenario/integrators.hpp"
 #include "scene/scene.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 #include "verify/probe/profiled_system.hpp"
 #include "verify/stress/check/distance.hpp"
 #include "verify/stress/check/events.hpp"
@@ -37,9 +37,7 @@ constexpr std::uint64_t k_samples = 8;  // in pairs
 // A run is stuck if it takes this many times as long as the scene's own run or its reference.
 constexpr double k_patience = 4.0;
 // Overlaps over R0 below which there is nothing but round-off (docs/reference/limits.md).
-constexpr double k_resolution = 1e-12;
 // Sum of the squared components of normals along a direction that they do not span: round-off.
-constexpr double k_same_directions = 1e-9;
 constexpr double k_slower = 1e6;
 constexpr Magnification k_magnification{.length = 731.0585, .stress = 1.618034e-5};
 // Number of turned copies of a scene that a limit has ended, and of further copies that measure their mutual distance.
@@ -149,7 +147,7 @@ bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t 
     for (const Eigen::Vector3d& normal : c.normals) hold += normal * normal.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hold, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[0] > k_same_directions;
+  return solver.eigenvalues()[0] > k_same_direction;
 }
 
 /// True if an integrator has given up for a stated reason: the run then does not show how the scene goes on.

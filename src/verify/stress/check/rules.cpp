@@ -16,12 +16,11 @@
 #include "scenario/integrators.hpp"
 #include "scenario/model_input.hpp"
 #include "scene/scene.hpp"
+#include "system/resolution.hpp"
 #include "verify/stress/check/distance.hpp"
 
 namespace monograin {
 namespace {
-
-constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 
 // Error of a controlled integrator over its rtol (docs/performance.md).
 constexpr double k_rtol_multiple = 100.0;
@@ -44,7 +43,6 @@ constexpr std::size_t k_most_events_between_ends = 10;
 constexpr long k_most_work_direct = 1000;
 constexpr double k_most_work_integrated = 20000.0;
 // Resultant of unit normals below which a class of walls does not act on the centre.
-constexpr double k_no_direction = 1e-6;
 // Share of the rest of a force's ramp that check_hold() looks ahead, and of the largest force that is small beside it.
 constexpr double k_little = 1e-3;
 // Largest gap at which a wall touches, over the depth to which a program presses: the accuracy of positions.

@@ -1,0 +1,40 @@
+/// What counts as nothing: by these numbers every room decides that a value is zero or that two values are equal.
+#pragma once
+
+#include <limits>
+
+namespace monograin {
+
+/// Quiet NaN: marks a quantity that is undefined, such as the pressure of an open contact.
+inline constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double k_infinity = std::numeric_limits<double>::infinity();
+/// Distance from 1 to the next double.
+inline constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
+
+/// Relative round-off of a value that comes from a few operations.
+inline constexpr double k_round_off = 4.0 * k_epsilon;
+/// Relative difference of two computed values that are equal: their round-off adds up over some thousand operations.
+inline constexpr double k_same_value = 1e-12;
+/// Relative difference of two numbers of a scenario that are equal: people write them with fewer digits.
+inline constexpr double k_same_number = 1e-9;
+
+/// Overlap over R0 below which there is nothing but round-off: a wall's distance from the centre has the round-off of
+/// R0, which is 1e-16, and leaves an overlap of this size four digits.
+inline constexpr double k_resolution = 1e-12;
+
+/// Angle [rad] between equal directions, or difference of their components.
+inline constexpr double k_same_direction = 1e-9;
+/// Component of unit normals, or length of their mean, that is none. Stiffness goes with its square, which is then at
+/// the round-off of the others' stiffness.
+inline constexpr double k_no_direction = 1e-6;
+/// Stiffness, over the greatest one, that is round-off.
+inline constexpr double k_no_stiffness = 1e-12;
+
+/// Distance of two step coordinates that are the same instant, and largest value of a guard that is zero: guards are of
+/// the order of one, and both come from some hundred operations.
+inline constexpr double k_same_instant = 1e-13;
+inline constexpr double k_zero_guard = 1e-13;
+/// Step coordinate ahead of an instant at which the mode that begins is read.
+inline constexpr double k_ahead = 1e-9;
+
+}  // namespace monograin

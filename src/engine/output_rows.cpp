@@ -1,0 +1,133 @@
+#include "engine/output_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "system/resolution.hpp"
+
+namespace monograin {
+namespace {
+
+// Step coordinate of the output point at the end of a step that may end early, wherever that will be.
+constexpr double k_at_end = k_infinity;
+
+}  // namespace
+
+OutputRows::OutputRows(const Output& output, const StepClock& clock, Integrator& integrator, HistorySink& sink,
+                       ForwardSensitivities* sensitivities, std::size_t unknowns)
+    : output_(output),
+      clock_(clock),
+      integrator_(integrator),
+      sink_(sink),
+      sensitivities_(sensitivities),
+      state_(unknowns) {
+  points_.reserve(output.times.empty() ? static_cast<std::size_t>(output.points) : output.times.size());
+}
+
+double OutputRows::least_length() const noexcept { return output_.points * k_same_instant; }
+
+void OutputRows::begin_step() { points_.clear(); }
+
+void OutputRows::place(double end, bool may_end_elsewhere) {
+  next_ = 0;
+  const int first = end > 0.0 ? 1 : output_.points;
+  for (int j = first; output_.times.empty() && j <= output_.points; ++j) {
+    const double xi = end * (static_cast<double>(j) / output_.points);
+    points_.push_back({xi, clock_.time(xi)});
+  }
+  if (may_end_elsewhere && !points_.empty()) points_.back().xi = k_at_end;
+  for (const double instant : output_.times) {
+    if (clock_.duration == 0.0) break;
+    const double xi = (instant - clock_.start) / clock_.duration;
+    if (!(xi > k_same_instant && xi < 1.0 + k_same_instant)) continue;
+    points_.push_back({xi > 1.0 - k_same_instant ? 1.0 : xi, instant});
+  }
+}
+
+void OutputRows::end_step(double xi) {
+  if (next_ + 1 == points_.size() && points_.back().xi == k_at_end) points_.back().xi = xi;
+}
+
+std::optional<std::string> OutputRows::note_unreached_times(double end) const {
+  const auto is_beyond = [end](double instant) { return instant > end * (1.0 + k_same_value); };
+  const auto count = std::ranges::count_if(output_.times, is_beyond);
+  if (count == 0) return std::nullopt;
+  return fmt::format("{} of {} output times lie{} beyond the end of the program, t = {:.9g} s: no rows there", count,
+                     output_.times.size(), count == 1 ? "s" : "", end);
+}
+
+void OutputRows::write_before(double last, double xi) {
+  if (has_internal_steps() && xi < 1.0 && integrator_.fired().empty()) write_output({xi, clock_.time(xi)});
+  for (; next_ < points_.size() && points_[next_].xi < xi - k_same_instant; ++next_) {
+    // A point that lies before the integrator's last step by round-off is evaluated where that step began.
+    write_output({std::max(points_[next_].xi, last), points_[next_].time});
+  }
+}
+
+void OutputRows::write_output(const Point& point) {
+  integrator_.dense_output(point.xi, state_);
+  std::span<const double> derivatives;
+  if (sensitivities_ != nullptr) {
+    integrator_.dense_sensitivities(point.xi);
+    derivatives = sensitivities_->row_at(point.xi, state_, clock_.start, clock_.duration);
+  }
+  if (holds_)
+    held_.push_back({point, state_, {derivatives.begin(), derivatives.end()}});
+  else
+    write(point, state_, derivatives);
+}
+
+void OutputRows::write(const Point& point, std::span<const double> y, std::span<const double> derivatives) {
+  sink_.observe(point.time, clock_.label(), point.xi, y);
+  sink_.differentiate(derivatives);
+  sink_.append(RowSide::output);
+}
+
+void OutputRows::observe(double xi, std::span<const double> y) {
+  sink_.observe(clock_.time(xi), clock_.label(), xi, y);
+  if (sensitivities_ != nullptr) sink_.differentiate(sensitivities_->row_here());
+}
+
+void OutputRows::write_first(std::span<const double> y, std::span<const Event> events) {
+  observe(0.0, y);
+  if (!events.empty()) sink_.append(RowSide::before);
+  sink_.append(RowSide::output);
+  if (!events.empty()) close_instant(0.0, y, events);
+}
+
+void OutputRows::open_instant(double xi, std::span<const double> y) {
+  if (is_paused_) return;
+  observe(xi, y);
+  sink_.append(RowSide::before);
+  if (next_ < points_.size() && points_[next_].xi <= xi + k_same_instant) {
+    ++next_;
+    sink_.append(RowSide::output);
+  }
+}
+
+void OutputRows::close_instant(double xi, std::span<const double> y, std::span<const Event> events) {
+  if (is_paused_) return;
+  observe(xi, y);
+  sink_.append(RowSide::after);
+  for (const Event& event : events) sink_.event(event);
+}
+
+void OutputRows::hold() {
+  holds_ = true;
+  next_when_held_ = next_;
+}
+
+void OutputRows::drop_held() {
+  holds_ = false;
+  next_ = next_when_held_;
+  held_.clear();
+}
+
+void OutputRows::release_held() {
+  holds_ = false;
+  for (const HeldRow& row : std::exchange(held_, {})) write(row.point, row.state, row.derivatives);
+}
+
+}  // namespace monograin

@@ -1,0 +1,27 @@
+/// Where a run stands in its program.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
+
+namespace monograin {
+
+/// The present step of the program, and the instant at which it began.
+struct StepClock {
+  std::size_t step = 0;
+  double start = 0.0;     ///< [s]
+  double duration = 0.0;  ///< [s]
+
+  /// Instant [s] of a step coordinate.
+  [[nodiscard]] double time(double xi) const noexcept { return start + xi * duration; }
+  /// Number of the step, from 1.
+  [[nodiscard]] int label() const noexcept { return static_cast<int>(step + 1); }
+  /// Beginning of a message, e.g. "step 2, t = 1.5 s: ".
+  [[nodiscard]] std::string where(double xi) const {
+    return fmt::format("step {}, t = {:.9g} s: ", step + 1, time(xi));
+  }
+};
+
+}  // namespace monograin
