@@ -22,7 +22,7 @@ constexpr double k_rest = 0.25;
 // (step coordinates), and ratio of successive distances. A guard that begins nearer to zero than k_near_zero, but is
 // not zero to within round-off, may cross and return before the first node. Dependent unknowns may start with an
 // infinite slope; guards then count as near from farther away.
-constexpr double k_first_look = 1e-9;
+constexpr double k_first_sample = 1e-9;
 constexpr double k_grading = 30.0;
 constexpr double k_near_zero = 1e-3;
 constexpr double k_near_zero_if_steep = 0.1;
@@ -119,7 +119,7 @@ class Direct final : public EventLocator {
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end() && system.has_energies())
       quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
-    has_slaves_ = system.has_dependent_unknowns();
+    has_dependent_unknowns_ = system.has_dependent_unknowns();
     may_rest_ = std::ranges::any_of(unknowns, &Unknown::may_rest);
     trial_.resize(unknowns.size());
     branch_reach_.resize(unknowns.size());
@@ -184,8 +184,25 @@ class Direct final : public EventLocator {
   [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-13; }
 
  private:
+  /// A part of a piece in which one series gives the work of the rows. work_ is that series; with a closed form it has
+  /// no other use.
+  struct Panel {
+    double begin = 0.0, end = 0.0;
+    double work = 0.0;         ///< where the panel begins
+    double next_length = 0.0;  ///< of the panel that follows
+    bool is_resolved = false;  ///< the series is accurate
+
+    [[nodiscard]] double length() const noexcept { return end - begin; }
+    /// Position of xi in the panel, from -1 at its beginning to 1 at its end.
+    [[nodiscard]] double position(double xi) const noexcept { return 2.0 * (xi - begin) / length() - 1.0; }
+    /// Integral up to a position.
+    [[nodiscard]] double integral(const LegendreSeries& rate, double at) const noexcept {
+      return 0.5 * length() * rate.integral(at);
+    }
+  };
+
   /// Position of xi in the piece, from -1 at its beginning to 1 at its end.
-  [[nodiscard]] double place(double xi) const noexcept {
+  [[nodiscard]] double position(double xi) const noexcept {
     return piece_end_ > begin_ ? std::clamp(2.0 * (xi - begin_) / piece_length() - 1.0, -1.0, 1.0) : -1.0;
   }
 
@@ -194,8 +211,8 @@ class Direct final : public EventLocator {
   /// xi, and from the series only if that fails. Dependent unknowns are too steep to start from a node.
   void state_at(double xi, std::span<double> y) override {
     ++statistics_.rhs_evaluations;
-    const double t = place(xi);
-    if (goes_from_nodes() && !has_slaves_) {
+    const double t = position(xi);
+    if (goes_from_nodes() && !has_dependent_unknowns_) {
       std::size_t gone = 0;
       while (gone < nodes_->count && nodes_->places[gone] <= t) ++gone;
       for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + (gone > 0 ? gains_[k][gone - 1] : 0.0);
@@ -217,7 +234,7 @@ class Direct final : public EventLocator {
   void move_end(double xi) override {
     end_ = xi;
     state_at(xi, end_state_);
-    look(xi, end_state_, end_values_);
+    evaluate_guards(xi, end_state_, end_values_);
   }
 
   void solve_at_node(std::size_t j) {
@@ -232,13 +249,13 @@ class Direct final : public EventLocator {
   ///   length; unchanged if nothing limits it
   /// @return false if the piece is too long
   bool cover_piece(double& factor) {
-    forget_looks();
+    forget_samples();
     if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
-    if (begin_ == segment_begin_) look_early();
+    if (begin_ == segment_begin_) sample_early();
     for (std::size_t j = 0; j < nodes_->count; ++j) {
       const double xi = node(j);
       solve_at_node(j);
-      if (piece_length() > k_smallest_looked_into && !guard_set_.is_monotone()) look_inside(xi, trial_);
+      if (piece_length() > k_shortest_sampled && !guard_set_.is_monotone()) sample_inside(xi, trial_);
       if (has_branches_ && piece_length() > least_progress(begin_)) {
         if (const double share = share_of_reach(trial_); share > 1.0) {
           factor = std::clamp(k_safety / share, k_most_shrinkage, 0.5);
@@ -354,18 +371,18 @@ class Direct final : public EventLocator {
   /// Evaluates the guards between the beginning of the segment and its first node, if one of them begins near zero. A
   /// step may begin with a singularity, as at first touch, in which one guard is smooth and another is not. A segment
   /// that begins soon after is as near to the singularity.
-  void look_early() {
-    const double near = has_slaves_ ? k_near_zero_if_steep : k_near_zero;
+  void sample_early() {
+    const double near = has_dependent_unknowns_ ? k_near_zero_if_steep : k_near_zero;
     const auto is_near = [near](double value) { return std::abs(value) > k_zero_guard && std::abs(value) < near; };
     if (std::ranges::none_of(begin_values_, is_near)) return;
     const double first_node = 0.5 * piece_length() * (1.0 + nodes_->places[0]);
     try {
-      for (double distance = std::max(k_first_look, begin_); k_grading * distance <= first_node;
+      for (double distance = std::max(k_first_sample, begin_); k_grading * distance <= first_node;
            distance *= k_grading) {
         std::ranges::copy(begin_state_, trial_.begin());
         ++statistics_.rhs_evaluations;
         system_.solve(begin_ + distance, trial_);
-        look_inside(begin_ + distance, trial_);
+        sample_inside(begin_ + distance, trial_);
       }
     } catch (const std::domain_error&) {
       return;  // solving at the nodes finds out how far solutions exist
@@ -401,7 +418,7 @@ class Direct final : public EventLocator {
     system_.rates(end_, end_state_, rates_);
     const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
     const auto is_same = [&](double xi, std::span<const double> rates) {
-      const double error = std::abs(work_.value(place(xi)) - rates[*quadrature_]);
+      const double error = std::abs(work_.value(position(xi)) - rates[*quadrature_]);
       return (end_ - begin_) * error <= std::max(k_event_accuracy, work_accuracy_) * scale;
     };
     return is_same(begin_, begin_rates_) && is_same(end_, rates_);
@@ -409,59 +426,48 @@ class Direct final : public EventLocator {
 
   [[nodiscard]] double quadrature_at(double xi, std::span<const double> y) {
     if (is_closed_) return primitive_offset_ + *system_.closed_quadrature(xi, y);
-    return begin_state_[*quadrature_] + 0.5 * piece_length() * work_.integral(place(xi));
+    return begin_state_[*quadrature_] + 0.5 * piece_length() * work_.integral(position(xi));
   }
-
-  // --- panels
 
   void begin_panels() {
-    panel_begin_ = panel_end_ = begin_;
-    panel_length_ = end_ - begin_;
-    panel_work_ = begin_state_[*quadrature_];
-    is_panel_resolved_ = false;
-  }
-
-  [[nodiscard]] double panel_place(double xi) const noexcept {
-    return 2.0 * (xi - panel_begin_) / (panel_end_ - panel_begin_) - 1.0;
-  }
-  [[nodiscard]] double panel_integral(double t) const noexcept {
-    return 0.5 * (panel_end_ - panel_begin_) * work_.integral(t);
+    panel_ = {.begin = begin_, .end = begin_, .work = begin_state_[*quadrature_], .next_length = end_ - begin_};
   }
 
   /// Work at xi from the series of its panel. From the closed form if the panel has no accurate series, or if rows do
   /// not come in order of xi.
   /// @param y  complete state at xi but for the work
   double panel_work_at(double xi, std::span<const double> y) {
-    while (xi > panel_end_) take_next_panel();
-    if (!is_panel_resolved_ || xi < panel_begin_) return quadrature_at(xi, y);
-    return panel_work_ + panel_integral(panel_place(xi));
+    while (xi > panel_.end) take_next_panel();
+    if (!panel_.is_resolved || xi < panel_.begin) return quadrature_at(xi, y);
+    return panel_.work + panel_.integral(work_, panel_.position(xi));
   }
 
   /// Fits the series of the work over the next panel. No event lies inside a piece, so the mode holds at all nodes.
   void take_next_panel() {
     const LegendreNodes& nodes = LegendreNodes::many();
-    if (is_panel_resolved_) {
-      panel_work_ += panel_integral(1.0);
-    } else if (panel_end_ > begin_) {
-      state_at(panel_end_, trial_);
-      panel_work_ = quadrature_at(panel_end_, trial_);
+    if (panel_.is_resolved) {
+      panel_.work += panel_.integral(work_, 1.0);
+    } else if (panel_.end > begin_) {
+      state_at(panel_.end, trial_);
+      panel_.work = quadrature_at(panel_.end, trial_);
     }
-    panel_begin_ = panel_end_;
+    panel_.begin = panel_.end;
     for (double factor = 0.0; factor < 1.0;) {
-      panel_end_ = end_ - panel_begin_ <= (1.0 + k_rest) * panel_length_ ? end_ : panel_begin_ + panel_length_;
-      const double length = panel_end_ - panel_begin_;
+      panel_.end =
+          end_ - panel_.begin <= (1.0 + k_rest) * panel_.next_length ? end_ : panel_.begin + panel_.next_length;
+      const double length = panel_.length();
       for (std::size_t j = 0; j < nodes.count; ++j) {
-        const double xi = panel_begin_ + 0.5 * length * (1.0 + nodes.places[j]);
+        const double xi = panel_.begin + 0.5 * length * (1.0 + nodes.places[j]);
         state_at(xi, trial_);
         system_.rates(xi, trial_, rates_);
         slopes_[*quadrature_][j] = rates_[*quadrature_];
       }
       work_.fit(nodes, slopes_[*quadrature_]);
-      const double reach = work_reach(panel_work_, length, k_panel_accuracy);
-      is_panel_resolved_ = reach >= 1.0;
-      const bool is_last = is_panel_resolved_ || length <= k_shortest_panel;
+      const double reach = work_reach(panel_.work, length, k_panel_accuracy);
+      panel_.is_resolved = reach >= 1.0;
+      const bool is_last = panel_.is_resolved || length <= k_shortest_panel;
       factor = is_last ? k_most_growth : std::clamp(k_safety * reach, k_most_shrinkage, 0.5);
-      panel_length_ = factor * length;
+      panel_.next_length = factor * length;
     }
   }
 
@@ -470,13 +476,9 @@ class Direct final : public EventLocator {
   std::optional<std::size_t> quadrature_;
   bool is_closed_ = false;
   double primitive_offset_ = 0.0;
-  // The present panel of the piece. work_ is the series of the rates in it; with a closed form it has no other use.
   bool has_panels_ = false;
-  double panel_begin_ = 0.0, panel_end_ = 0.0;
-  double panel_length_ = 0.0;  ///< length of the next panel
-  double panel_work_ = 0.0;    ///< work where the panel begins
-  bool is_panel_resolved_ = false;
-  bool has_slaves_ = false;
+  Panel panel_;
+  bool has_dependent_unknowns_ = false;
   bool may_rest_ = false;  ///< some unknown may be determined by no equation
   double segment_begin_ = 0.0;
   int refusals_ = 0;                     ///< tiny pieces of this segment in which the equations ended

@@ -33,8 +33,8 @@ bool crosses(int direction, double before, double after) noexcept {
 
 }  // namespace
 
-EventLocator::EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t looks)
-    : system_(system), guard_set_(guard_set), most_looks_(looks + k_evaluations_before_end) {
+EventLocator::EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t samples)
+    : system_(system), guard_set_(guard_set), most_samples_(samples + k_evaluations_before_end) {
   for (auto* state : {&begin_state_, &end_state_, &guess_}) state->resize(system.unknowns().size());
 }
 
@@ -44,10 +44,10 @@ void EventLocator::begin_segment(double xi, std::span<const double> y) {
   std::ranges::copy(y, end_state_.begin());
   for (auto* values : {&values_, &extremum_values_, &root_values_, &begin_values_, &end_values_})
     values->resize(guard_set_.size());
-  looks_.reserve(most_looks_);
-  look_values_.reserve(most_looks_ * guard_set_.size());
+  samples_.reserve(most_samples_);
+  sample_values_.reserve(most_samples_ * guard_set_.size());
   fired_.reserve(guard_set_.size());
-  look(end_, end_state_, end_values_);
+  evaluate_guards(end_, end_state_, end_values_);
   read_sides();
 }
 
@@ -56,22 +56,22 @@ void EventLocator::begin_piece() {
   std::swap(begin_state_, end_state_);
   std::swap(begin_values_, end_values_);
   fired_.clear();
-  forget_looks();
+  forget_samples();
 }
 
-void EventLocator::look_inside(double xi, std::span<const double> y) {
-  look_values_.resize((looks_.size() + 1) * guard_set_.size());
-  const auto values = std::span(look_values_).last(guard_set_.size());
-  look(xi, y, values);
+void EventLocator::sample_inside(double xi, std::span<const double> y) {
+  sample_values_.resize((samples_.size() + 1) * guard_set_.size());
+  const auto values = std::span(sample_values_).last(guard_set_.size());
+  evaluate_guards(xi, y, values);
   // A guard that is zero to within round-off keeps the side of its last value.
-  const View last = seen(looks_.size());
+  const View last = sample(samples_.size());
   for (std::size_t g = 0; g < values.size(); ++g) {
     if (std::abs(values[g]) <= k_zero_guard) values[g] = last.values[g];
   }
-  looks_.push_back(xi);
+  samples_.push_back(xi);
 }
 
-void EventLocator::look(double xi, std::span<const double> y, std::span<double> values) {
+void EventLocator::evaluate_guards(double xi, std::span<const double> y, std::span<double> values) {
   ++statistics_.guard_evaluations;
   guard_set_.values(xi, y, values);
 }
@@ -89,7 +89,7 @@ void EventLocator::read_sides() {
   std::ranges::copy(end_state_, guess_.begin());
   try {
     state_ahead(ahead, guess_);
-    look(ahead, guess_, values_);
+    evaluate_guards(ahead, guess_, values_);
   } catch (const std::domain_error&) {
     return;  // no solution ahead: the first piece finds out how far solutions exist
   }
@@ -100,10 +100,10 @@ void EventLocator::read_sides() {
 
 /// Stored values of the guards in the order of xi: index 0 is the beginning of the piece, then come the evaluations
 /// inside it; any larger index is the end.
-EventLocator::View EventLocator::seen(std::size_t place) const {
+EventLocator::View EventLocator::sample(std::size_t place) const {
   if (place == 0) return {begin_, begin_values_};
-  if (place > looks_.size()) return {end_, end_values_};
-  return {looks_[place - 1], std::span(look_values_).subspan((place - 1) * guard_set_.size(), guard_set_.size())};
+  if (place > samples_.size()) return {end_, end_values_};
+  return {samples_[place - 1], std::span(sample_values_).subspan((place - 1) * guard_set_.size(), guard_set_.size())};
 }
 
 bool EventLocator::any_crosses(const View& before, const View& after) const {
@@ -116,11 +116,11 @@ bool EventLocator::any_crosses(const View& before, const View& after) const {
 
 /// Position between an evaluation and the next at which a guard may have crossed zero and returned: the first extremum
 /// of a parabola through these two values and the one after, or the one before. Without any: the next evaluation.
-/// @param place  index of the first evaluation, as in seen()
+/// @param place  index of the first evaluation, as in sample()
 double EventLocator::hidden_extremum(std::size_t place) const {
-  const View a = seen(place);
-  const View b = seen(place + 1);
-  if (b.xi - a.xi < k_smallest_hidden || looks_.empty()) return b.xi;
+  const View a = sample(place);
+  const View b = sample(place + 1);
+  if (b.xi - a.xi < k_smallest_hidden || samples_.empty()) return b.xi;
   struct Third {
     View view;
     double per_b = 0.0;  ///< 1 / (signed distance from b); per_a: from a
@@ -129,8 +129,8 @@ double EventLocator::hidden_extremum(std::size_t place) const {
   std::array<Third, 2> thirds;
   std::size_t count = 0;
   const auto add = [&](const View& view) { thirds[count++] = {view, 1.0 / (view.xi - b.xi), 1.0 / (view.xi - a.xi)}; };
-  if (place < looks_.size()) add(seen(place + 2));
-  if (place > 0) add(seen(place - 1));
+  if (place < samples_.size()) add(sample(place + 2));
+  if (place > 0) add(sample(place - 1));
 
   const auto directions = guard_set_.directions();
   const double per_length = 1.0 / (b.xi - a.xi);
@@ -159,15 +159,15 @@ void EventLocator::locate_event() {
     std::size_t guard = 0;
   };
   std::optional<End> of_branch;
-  for (std::size_t place = 0; place <= looks_.size();) {
-    const View before = seen(place);
-    View after = seen(place + 1);
+  for (std::size_t place = 0; place <= samples_.size();) {
+    const View before = sample(place);
+    View after = sample(place + 1);
     if (!any_crosses(before, after)) {
       const double extremum = hidden_extremum(place);
       ++place;
       if (extremum == after.xi) continue;
       state_at(extremum, guess_);
-      look(extremum, guess_, extremum_values_);
+      evaluate_guards(extremum, guess_, extremum_values_);
       after = {extremum, extremum_values_};
       if (!any_crosses(before, after)) continue;
       --place;
@@ -185,14 +185,14 @@ void EventLocator::locate_event() {
     }
     const bool is_shorter = root < end_ - least_progress(begin_);
     place = shorten(root, place);
-    const double last_look = seen(place).xi;
+    const double last_sample = sample(place).xi;
     if (is_branch_end(first) && !of_branch) {
       of_branch = {root, first};
-      look_up_to(last_look);
+      sample_up_to(last_sample);
       continue;
     }
     // If another guard has an earlier root, the loop searches what is left of the piece again.
-    if (collect_fired(first, seen(place), is_shorter)) return;
+    if (collect_fired(first, sample(place), is_shorter)) return;
     fired_.clear();
   }
   // The end of a branch counts as a root even if its guard is short of zero by round-off: every next piece would end
@@ -219,13 +219,13 @@ bool EventLocator::collect_fired(std::size_t first, const View& last, bool is_sh
 }
 
 /// Ends the piece at xi, or earlier if no state exists at xi, and drops the evaluations beyond the end.
-/// @param looks  number of evaluations inside the piece to keep at most
+/// @param samples  number of evaluations inside the piece to keep at most
 /// @return number of evaluations left
-std::size_t EventLocator::shorten(double xi, std::size_t looks) {
-  looks_.resize(looks);
+std::size_t EventLocator::shorten(double xi, std::size_t samples) {
+  samples_.resize(samples);
   if (xi < end_) move_end(xi);
-  while (!looks_.empty() && looks_.back() >= end_) looks_.pop_back();
-  return looks_.size();
+  while (!samples_.empty() && samples_.back() >= end_) samples_.pop_back();
+  return samples_.size();
 }
 
 bool EventLocator::is_branch_end(std::size_t guard) const {
@@ -233,14 +233,14 @@ bool EventLocator::is_branch_end(std::size_t guard) const {
 }
 
 /// Evaluates the guards between xi = last and the end that a root has given the piece, ever nearer to the end.
-void EventLocator::look_up_to(double last) {
+void EventLocator::sample_up_to(double last) {
   double distance = end_ - last;
-  for (std::size_t look = 0; look < k_evaluations_before_end; ++look) {
+  for (std::size_t k = 0; k < k_evaluations_before_end; ++k) {
     distance *= k_approach_to_end;
     if (distance < least_progress(end_)) return;
     try {
       state_at(end_ - distance, guess_);
-      look_inside(end_ - distance, guess_);
+      sample_inside(end_ - distance, guess_);
     } catch (const std::domain_error&) {
       continue;  // next to the end of the equations the solver may miss a state that exists
     }
@@ -263,7 +263,7 @@ double EventLocator::first_root(const View& before, const View& after, std::size
   for (const auto& [g, share] : candidates_) {
     if (first < up_to.xi) {
       state_at(first, guess_);
-      look(first, guess_, root_values_);
+      evaluate_guards(first, guess_, root_values_);
       up_to = {first, root_values_};
     }
     if (!crosses(directions[g], before.values[g], up_to.values[g])) continue;
@@ -290,7 +290,7 @@ double EventLocator::polish(std::size_t guard, const View& before, const View& a
   double value = 0.0;
   const auto function = [&](double xi) {
     state_at(xi, guess_);
-    look(xi, guess_, values_);
+    evaluate_guards(xi, guess_, values_);
     value = values_[guard];
     return std::abs(value) <= rounding ? 0.0 : value;
   };

@@ -20,24 +20,24 @@ class EventLocator : public Integrator {
   [[nodiscard]] Statistics statistics() const override { return statistics_; }
 
  protected:
-  /// @param looks  expected evaluations of the guards inside a piece; memory for them is reserved
-  EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t looks = 0);
+  /// @param samples  expected evaluations of the guards inside a piece; memory for them is reserved
+  EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t samples = 0);
 
   /// Pieces shorter than this (step coordinates) have no evaluations inside: guards near zero are round-off there.
-  static constexpr double k_smallest_looked_into = 1e-6;
+  static constexpr double k_shortest_sampled = 1e-6;
 
   /// Starts a segment at xi: stores the state, evaluates the guards and finds which side of zero each one is on.
   void begin_segment(double xi, std::span<const double> y);
   /// Starts a piece where the last one ended.
   void begin_piece();
   /// Evaluates the guards inside the present piece and stores their values. xi must be beyond all earlier evaluations.
-  void look_inside(double xi, std::span<const double> y);
+  void sample_inside(double xi, std::span<const double> y);
   /// Drops the evaluations inside the piece.
-  void forget_looks() noexcept { looks_.clear(); }
+  void forget_samples() noexcept { samples_.clear(); }
   /// Moves the end of the piece to the first root in it, if there is one, and collects the guards that fire there.
   void locate_event();
   /// Evaluates the guards at (xi, y), and counts the evaluation.
-  void look(double xi, std::span<const double> y, std::span<double> values);
+  void evaluate_guards(double xi, std::span<const double> y, std::span<double> values);
 
   HybridSystem& system_;
   GuardSet& guard_set_;
@@ -71,19 +71,19 @@ class EventLocator : public Integrator {
   virtual void move_end(double xi) = 0;
 
   void read_sides();
-  [[nodiscard]] View seen(std::size_t place) const;
+  [[nodiscard]] View sample(std::size_t place) const;
   [[nodiscard]] bool any_crosses(const View& before, const View& after) const;
   [[nodiscard]] double hidden_extremum(std::size_t place) const;
   [[nodiscard]] double first_root(const View& before, const View& after, std::size_t& guard);
   [[nodiscard]] bool collect_fired(std::size_t first, const View& last, bool is_shorter);
-  [[nodiscard]] std::size_t shorten(double xi, std::size_t looks);
+  [[nodiscard]] std::size_t shorten(double xi, std::size_t samples);
   [[nodiscard]] bool is_branch_end(std::size_t guard) const;
-  void look_up_to(double last);
+  void sample_up_to(double last);
   [[nodiscard]] double polish(std::size_t guard, const View& before, const View& after);
 
-  std::size_t most_looks_;           ///< evaluations inside a piece for which memory is reserved
-  std::vector<double> looks_;        ///< positions of the evaluations inside the piece, in increasing order
-  std::vector<double> look_values_;  ///< one row of guard values for each of them
+  std::size_t most_samples_;           ///< evaluations inside a piece for which memory is reserved
+  std::vector<double> samples_;        ///< positions of the evaluations inside the piece, in increasing order
+  std::vector<double> sample_values_;  ///< one row of guard values for each of them
   std::vector<double> guess_;
   std::vector<double> values_, extremum_values_, root_values_;
   std::vector<Candidate> candidates_;

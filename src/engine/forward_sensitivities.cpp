@@ -95,7 +95,79 @@ struct ForwardSensitivities::Side {
     xi += length;
     system().complete(xi, y);
   }
+  void go_to_guard(std::span<const std::size_t> fired);
+  void expect_same_guards(const HybridSystem& base, std::span<const Event> log, std::span<const Event> of_side) const;
+  void expect_no_other_guard(std::span<const std::size_t> fired);
 };
+
+/// Throws LostSensitivities if a neighbour has other events or other guards than the base.
+void ForwardSensitivities::Side::expect_same_guards(const HybridSystem& base, std::span<const Event> log,
+                                                    std::span<const Event> of_side) const {
+  const bool has_same_events = std::ranges::equal(log, of_side, [](const Event& one, const Event& other) {
+    return one.name == other.name && one.contact_class == other.contact_class && one.other_class == other.other_class;
+  });
+  const bool has_same_guards =
+      std::ranges::equal(base.guards(), scene.system->guards(), [](const Guard& one, const Guard& other) {
+        return one.kind == other.kind && one.index == other.index && one.direction == other.direction;
+      });
+  if (!has_same_events || !has_same_guards) throw LostSensitivities("a neighbouring run passes other events");
+}
+
+/// Throws LostSensitivities if a guard has crossed zero in this neighbour, but has not fired in the base.
+void ForwardSensitivities::Side::expect_no_other_guard(std::span<const std::size_t> fired) {
+  guards.resize(guard_set.size());
+  guard_set.values(xi, y, guards);
+  for (std::size_t g = 0; g < guards.size(); ++g) {
+    const int direction = guard_set.directions()[g];
+    const bool has_crossed = direction * guards[g] > k_zero_guard && direction * begin_guards[g] < -k_zero_guard;
+    if (has_crossed && std::ranges::find(fired, g) == fired.end()) {
+      throw LostSensitivities(fmt::format("a neighbouring run passes event '{}' earlier or later", guard_set.name(g)));
+    }
+  }
+}
+
+/// Moves a neighbour along its rates to where the guards that have fired are zero; all of them have to be zero at the
+/// same instant.
+void ForwardSensitivities::Side::go_to_guard(std::span<const std::size_t> fired) {
+  constexpr double k_short = 1e-7;
+  system().rates(xi, y, rates);
+  if (!all_finite(rates)) throw LostSensitivities("the rates of a neighbouring run are infinite at an event");
+  const double from_xi = xi;
+  const std::vector<double> from_y = y;
+  guards.resize(guard_set.size());
+  const auto guard_at = [&](double length, std::size_t guard) {
+    xi = from_xi;
+    y = from_y;
+    shift(length);
+    guard_set.values(xi, y, guards);
+    return guards[guard];
+  };
+  double first = 0.0;
+  for (std::size_t j = fired.size(); j-- > 0;) {
+    double length = 0.0;
+    double value = guard_at(0.0, fired[j]);
+    const double slope = (value - guard_at(-k_short, fired[j])) / k_short;
+    for (int correction = 0; value != 0.0; ++correction) {
+      const double by = -value / slope;
+      if (!std::isfinite(by) || correction == k_most_secant_steps) {
+        throw LostSensitivities(fmt::format("the instant of event '{}' has no derivative", guard_set.name(fired[j])));
+      }
+      if (std::abs(by) < k_located * (1 + correction * correction)) break;
+      length += by;
+      value = guard_at(length, fired[j]);
+    }
+    if (j + 1 == fired.size()) first = length;
+    if (std::abs(length - first) > k_together * std::max(std::abs(length), 1e-6)) {
+      throw LostSensitivities(fmt::format("events that happen together come apart in a neighbouring run: '{}' and '{}'",
+                                          guard_set.name(fired[j]), guard_set.name(fired.back())));
+    }
+    if (j == 0) static_cast<void>(guard_at(length, fired[j]));
+  }
+  if (xi > 1.0 + k_same_value || xi < begin - k_same_value) {
+    throw LostSensitivities(
+        fmt::format("a neighbouring run does not pass event '{}' there", guard_set.name(fired.front())));
+  }
+}
 
 bool has_forward_sensitivities(std::string_view integrator) noexcept {
   return integrator == integrators::k_cvode_bdf || integrator == integrators::k_cvode_adams ||
@@ -241,34 +313,6 @@ void ForwardSensitivities::resume() {
   }
 }
 
-/// Throws LostSensitivities if a neighbour has other events or other guards than the base.
-void ForwardSensitivities::expect_same_guards(Side& side, std::span<const Event> log,
-                                              std::span<const Event> of_side) const {
-  const bool has_same_events = std::ranges::equal(log, of_side, [](const Event& one, const Event& other) {
-    return one.name == other.name && one.contact_class == other.contact_class && one.other_class == other.other_class;
-  });
-  const bool has_same_guards =
-      std::ranges::equal(base_.guards(), side.system().guards(), [](const Guard& one, const Guard& other) {
-        return one.kind == other.kind && one.index == other.index && one.direction == other.direction;
-      });
-  if (!has_same_events || !has_same_guards) throw LostSensitivities("a neighbouring run passes other events");
-}
-
-/// Throws LostSensitivities if a guard has crossed zero in a neighbour, but has not fired in the base.
-void ForwardSensitivities::expect_no_other_guard(Side& side, std::span<const std::size_t> fired) const {
-  side.guards.resize(side.guard_set.size());
-  side.guard_set.values(side.xi, side.y, side.guards);
-  for (std::size_t g = 0; g < side.guards.size(); ++g) {
-    const int direction = side.guard_set.directions()[g];
-    const bool has_crossed =
-        direction * side.guards[g] > k_zero_guard && direction * side.begin_guards[g] < -k_zero_guard;
-    if (has_crossed && std::ranges::find(fired, g) == fired.end()) {
-      throw LostSensitivities(
-          fmt::format("a neighbouring run passes event '{}' earlier or later", side.guard_set.name(g)));
-    }
-  }
-}
-
 void ForwardSensitivities::start() {
   each_side([](Number&, Side& side) { side.system().start(side.y); });
   is_placed_ = true;
@@ -286,7 +330,7 @@ void ForwardSensitivities::begin_step(std::size_t step, const StepPlan& plan, st
     side.xi = 0.0;
     std::vector<Event> of_side;
     side.system().begin_step(side.plan.ramps, side.y, of_side);
-    expect_same_guards(side, log, of_side);
+    side.expect_same_guards(base_, log, of_side);
     side.guard_set.begin_step(side.plan.conditions, 0.0, side.y);
     if ((side.plan.duration > 0.0) != (plan.duration > 0.0)) {
       throw LostSensitivities("a step takes no time in one of the neighbouring runs");
@@ -311,52 +355,6 @@ void ForwardSensitivities::leave_singularity(double xi) {
   is_placed_ = false;
 }
 
-/// Moves a neighbour along its rates to where the guards that have fired are zero; all of them have to be zero at the
-/// same instant.
-void ForwardSensitivities::go_to_guard(Side& side, std::span<const std::size_t> fired) {
-  constexpr double k_short = 1e-7;
-  HybridSystem& system = side.system();
-  system.rates(side.xi, side.y, side.rates);
-  ++evaluations_;
-  if (!all_finite(side.rates)) throw LostSensitivities("the rates of a neighbouring run are infinite at an event");
-  const double xi = side.xi;
-  const std::vector<double> y = side.y;
-  side.guards.resize(side.guard_set.size());
-  const auto guard_at = [&](double length, std::size_t guard) {
-    side.xi = xi;
-    side.y = y;
-    side.shift(length);
-    side.guard_set.values(side.xi, side.y, side.guards);
-    return side.guards[guard];
-  };
-  double first = 0.0;
-  for (std::size_t j = fired.size(); j-- > 0;) {
-    double length = 0.0;
-    double value = guard_at(0.0, fired[j]);
-    const double slope = (value - guard_at(-k_short, fired[j])) / k_short;
-    for (int correction = 0; value != 0.0; ++correction) {
-      const double by = -value / slope;
-      if (!std::isfinite(by) || correction == k_most_secant_steps) {
-        throw LostSensitivities(
-            fmt::format("the instant of event '{}' has no derivative", side.guard_set.name(fired[j])));
-      }
-      if (std::abs(by) < k_located * (1 + correction * correction)) break;
-      length += by;
-      value = guard_at(length, fired[j]);
-    }
-    if (j + 1 == fired.size()) first = length;
-    if (std::abs(length - first) > k_together * std::max(std::abs(length), 1e-6)) {
-      throw LostSensitivities(fmt::format("events that happen together come apart in a neighbouring run: '{}' and '{}'",
-                                          side.guard_set.name(fired[j]), side.guard_set.name(fired.back())));
-    }
-    if (j == 0) static_cast<void>(guard_at(length, fired[j]));
-  }
-  if (side.xi > 1.0 + k_same_value || side.xi < side.begin - k_same_value) {
-    throw LostSensitivities(
-        fmt::format("a neighbouring run does not pass event '{}' there", side.guard_set.name(fired.front())));
-  }
-}
-
 bool ForwardSensitivities::may_end_branch() const {
   return is_active_ && std::ranges::any_of(base_.guards(), &Guard::is_branch_end);
 }
@@ -367,7 +365,8 @@ bool ForwardSensitivities::aim(std::span<const std::size_t> fired, double xi, st
   beside([&] {
     for (Number& number : numbers_) {
       place(number, xi, y);
-      for (Side& side : number.sides) go_to_guard(side, fired);
+      for (Side& side : number.sides) side.go_to_guard(fired);
+      evaluations_ += 2;
       sigma_ahead.push_back((number.sides[1].xi - number.sides[0].xi) / (2.0 * number.step));
       for (Side& side : number.sides) side.go_back();
     }
@@ -385,8 +384,10 @@ void ForwardSensitivities::locate(std::span<const std::size_t> fired, double xi,
     for (Number& number : numbers_) {
       place(number, xi, y);
       for (Side& side : number.sides) {
-        if (!has_end) go_to_guard(side, fired);  // aim() has brought a neighbour to the end of its branch
-        expect_no_other_guard(side, fired);
+        // aim() has brought a neighbour to the end of its branch already.
+        if (!has_end) side.go_to_guard(fired);
+        evaluations_ += has_end ? 0 : 1;
+        side.expect_no_other_guard(fired);
       }
     }
   });
@@ -399,7 +400,7 @@ void ForwardSensitivities::fire(std::span<const std::size_t> of_system, std::spa
     if (side.system().fire(of_system, side.xi, side.y, of_side)) {
       throw LostSensitivities("a neighbouring run ends at an event");
     }
-    expect_same_guards(side, log, of_side);
+    side.expect_same_guards(base_, log, of_side);
   });
 }
 
@@ -435,7 +436,7 @@ void ForwardSensitivities::end_step(std::span<const double> y, bool is_solved) {
         if (side.plan.duration > 0.0) side.move(1.0 - side.xi);
         side.xi = 1.0;
         if (is_solved && side.system().is_solvable()) side.system().solve(1.0, side.y);
-        expect_no_other_guard(side, {});
+        side.expect_no_other_guard({});
         side.guard_set.note_met({}, 1.0, side.y);
       }
     }

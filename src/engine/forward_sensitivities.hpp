@@ -150,9 +150,6 @@ class ForwardSensitivities {
   void place(Number& number, double xi, std::span<const double> y, double beyond = 0.0);
   void expect_near(const Side& side, std::span<const double> y) const;
   void resume();
-  void go_to_guard(Side& side, std::span<const std::size_t> fired);
-  void expect_same_guards(Side& side, std::span<const Event> log, std::span<const Event> of_side) const;
-  void expect_no_other_guard(Side& side, std::span<const std::size_t> fired) const;
   void find_slopes(double xi, std::span<const double> y);
   void observe(Side& side);
   void add_rounding_to_row(Number& number);

@@ -47,7 +47,7 @@ class Stepped final : public EventLocator {
     }
     const double end = std::min(std::min(1.0, (std::floor(begin_ * k_pieces + 1e-9) + 1.0) / k_pieces), step_end_);
     move_end(end);
-    if (guard_set_.size() > 0) look_into_middle();
+    if (guard_set_.size() > 0) sample_middle();
     locate_event();
     return {.xi = end_, .hit_guard = !fired_.empty()};
   }
@@ -94,12 +94,12 @@ class Stepped final : public EventLocator {
 
   /// Evaluates the guards at the middle of the piece. If a long step leads beyond an event, the middle may have no
   /// state although the end has one: the piece then ends before its middle.
-  void look_into_middle() {
-    while (end_ - begin_ > k_smallest_looked_into) {
+  void sample_middle() {
+    while (end_ - begin_ > k_shortest_sampled) {
       const double middle = std::midpoint(begin_, end_);
       try {
         state_at(middle, middle_state_);
-        look_inside(middle, middle_state_);
+        sample_inside(middle, middle_state_);
         return;
       } catch (const std::domain_error&) {
         move_end(std::midpoint(begin_, middle));
@@ -114,7 +114,7 @@ class Stepped final : public EventLocator {
       end_ = xi;
       try {
         state_at(xi, end_state_);
-        look(xi, end_state_, end_values_);
+        evaluate_guards(xi, end_state_, end_values_);
         return;
       } catch (const std::domain_error&) {
         if (xi - begin_ < least_progress(begin_)) throw;
@@ -245,7 +245,7 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
     const double way = base_[j] != 0.0 ? std::abs(length * base_[j]) : largest_way;
     const double wanted = std::max(std::min(k_share_of_step * way, k_cubic_root * std::max(size, k_least_size)),
                                    k_root * std::max(size, way));
-    const double seen = look_beside(xi, j, wanted);
+    const double seen = sample_beside(xi, j, wanted);
     for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - beyond_[i]) / seen;
   }
   // A second-order quotient over a good part of the step. Next to a pole, round-off of xi leaves few digits of a
@@ -261,7 +261,7 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   }
 }
 
-double DifferenceJacobian::look_beside(double xi, std::size_t j, double wanted) {
+double DifferenceJacobian::sample_beside(double xi, std::size_t j, double wanted) {
   const double z = point_[j];
   const double step = shift_within_domain(wanted, [&](double by) {
     point_[j] = z + by;

@@ -145,7 +145,7 @@ class DifferenceJacobian {
   /// do not exist is replaced by the point itself.
   /// @param wanted  increment; made smaller where the equations end
   /// @return distance between the two states
-  double look_beside(double xi, std::size_t j, double wanted);
+  double sample_beside(double xi, std::size_t j, double wanted);
 
   ScaledForm& form_;
   std::vector<double> base_, shifted_, beyond_, point_;

@@ -68,16 +68,16 @@ TEST(Direct, DoesNotSearchForARootWithinRounding) {
   constexpr double k_root = 0.0123;
   const auto difference = [](double y) { return (1.0 + 0.01 * y) - (1.0 + 0.01 * k_root) - 1e-18; };
   auto toy = std::make_unique<ToySystem>();
-  int looks = 0;
+  int samples = 0;
   toy->watched = {{"rounded", 1, [&](double, View y) {
-                     ++looks;
+                     ++samples;
                      return difference(y[0]);
                    }}};
   const TestRun result = run_directly(std::move(toy));
   EXPECT_EQ(result.events(), std::vector<std::string>{"rounded"});
   EXPECT_NEAR(result.time_of("rounded"), k_root, 1e-13);
   EXPECT_GE(difference(result.at_event("rounded", "y0")), 0.0) << "on or past the root";
-  EXPECT_LT(looks, 64);
+  EXPECT_LT(samples, 64);
 }
 
 TEST(Direct, DoesNotRefineRoundingOfTheRates) {

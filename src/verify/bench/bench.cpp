@@ -505,12 +505,12 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings, const st
       measure(die, integrators::k_direct, wrapped(always_integrated)));
   // This saving is so small that the run with it has to be wrapped, too.
   for (const char* integrator : {integrators::k_direct, integrators::k_cvode_bdf}) {
-    const auto looking = [&](double factor) {
+    const auto sampling = [&](double factor) {
       return measure(die, integrator,
-                     wrapped([factor](System system) { return looking_beyond(std::move(system), factor); }));
+                     wrapped([factor](System system) { return sampling_beyond(std::move(system), factor); }));
     };
-    add("no guard that cannot fire before the end of a step", fmt::format("die, {}", integrator), looking(1.0),
-        looking(10.0));
+    add("no guard that cannot fire before the end of a step", fmt::format("die, {}", integrator), sampling(1.0),
+        sampling(10.0));
   }
   add("observables only at output points", "die, direct", direct,
       measure(die, integrators::k_direct, wrapped(always_observed)));

@@ -171,14 +171,14 @@ class Limited final : public Wrapped {
   /// cheaper to read: it shows when to read the former again.
   void check_time() {
     const Clock::time_point now = Clock::now();
-    if (now < next_look_) return;
+    if (now < next_sample_) return;
     const double left = end_ - thread_seconds();
     if (!(left > 0.0)) throw OutOfTime();
-    next_look_ = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(left));
+    next_sample_ = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(left));
   }
 
   double end_;
-  Clock::time_point next_look_;
+  Clock::time_point next_sample_;
 };
 
 class AlwaysObserved final : public Wrapped {
@@ -312,7 +312,7 @@ std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system, doub
   return std::make_unique<Limited>(std::move(system), end);
 }
 
-std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> system, double factor) {
+std::unique_ptr<HybridSystem> sampling_beyond(std::unique_ptr<HybridSystem> system, double factor) {
   return std::make_unique<LookingBeyond>(std::move(system), factor);
 }
 

@@ -46,7 +46,7 @@ class OutOfTime : public std::runtime_error {
 /// the step's end are then evaluated, too. A factor of 10, compared with 1 (which changes nothing), shows what leaving
 /// out such guards saves.
 /// @param factor  length of the longer step over that of the step, >= 1
-[[nodiscard]] std::unique_ptr<HybridSystem> looking_beyond(std::unique_ptr<HybridSystem> system, double factor);
+[[nodiscard]] std::unique_ptr<HybridSystem> sampling_beyond(std::unique_ptr<HybridSystem> system, double factor);
 
 /// Wraps a system so that its differential unknowns are disturbed at the beginning of every step of the program, and
 /// where they are observed. Shows how the system carries errors on, and how they appear in the history.

@@ -172,14 +172,14 @@ double change_with_overlap(const Table& table, std::size_t row, std::size_t colu
   const auto overlap = table.find(name.substr(0, dot) + ".overlap");
   if (!overlap) return 0.0;
   double steepest = 0.0;
-  const auto has_looked = [&](std::size_t beside) {
+  const auto has_sampled = [&](std::size_t beside) {
     const double way = std::abs(table.at(beside, *overlap) - table.at(row, *overlap));
     if (!(way > length)) return false;
     steepest = std::max(steepest, std::abs(value(table.at(beside, column)) - value(table.at(row, column))) / way);
     return true;
   };
-  for (std::size_t beside = row; beside-- > 0 && !has_looked(beside);) continue;
-  for (std::size_t beside = row + 1; beside < table.row_count() && !has_looked(beside); ++beside) continue;
+  for (std::size_t beside = row; beside-- > 0 && !has_sampled(beside);) continue;
+  for (std::size_t beside = row + 1; beside < table.row_count() && !has_sampled(beside); ++beside) continue;
   return steepest * length;
 }
 

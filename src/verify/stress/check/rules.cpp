@@ -43,7 +43,8 @@ constexpr std::size_t k_most_events_between_ends = 10;
 constexpr long k_most_work_direct = 1000;
 constexpr double k_most_work_integrated = 20000.0;
 // Resultant of unit normals below which a class of walls does not act on the centre.
-// Share of the rest of a force's ramp that check_hold() looks ahead, and of the largest force that is small beside it.
+// Share of the rest of a force's ramp that check_hold() samples ahead, and of the largest force that is small beside
+// it.
 constexpr double k_little = 1e-3;
 // Largest gap at which a wall touches, over the depth to which a program presses: the accuracy of positions.
 constexpr double k_touch = 1e-9;
