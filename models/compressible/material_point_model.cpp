@@ -144,8 +144,8 @@ constexpr std::array<string_view, 9> k_point_domain{
     "rate independent: the same curve whatever the durations",
     "vmdc, dpc: axis ratio eps, cap centre pi3 above zero, relative density below 1, Poisson's ratio below 1/2; events "
     "where a run reaches one of these, a fault where it starts beyond",
-    "moduli up to 1e10 yield pressures: a run ends where they grow beyond (xi, xi1), because stresses are then what "
-    "rounding leaves of the strains",
+    "moduli up to 1e10 yield pressures: a run ends where they grow beyond (xi, xi1), because stresses are then lost in "
+    "the round-off of the strains",
     "dpc: an arc (transition_width) that ends above the axis of pressure",
     "plastic loading ends at corners of the program only",
     "warned: dpc flow that is not associated does negative plastic work at low pressure",

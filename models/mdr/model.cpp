@@ -82,7 +82,7 @@ constexpr std::array k_events{
     Term{"caps-intersect", "the caps of two contacts meet: the source's limit of validity (warning; stop if strict)"},
     Term{"step-end", "end of a step of the program"},
     Term{"until-met", "a step ended early by its condition"},
-    Term{"singular-growth", "the free surface is used up: the apparent radius would run away"},
+    Term{"singular-growth", "the free surface is used up: the apparent radius would grow without bound"},
     Term{"volume-limit", "elastic compression to half the volume"},
     Term{"limit", "another end of the equations' domain; the message says which"},
 };

@@ -5,13 +5,14 @@ namespace monograin {
 std::string_view advice(Difficulty difficulty) noexcept {
   switch (difficulty) {
     case Difficulty::below_resolution:
-      return "the program closes no contact by more than 1e-12 of the particle's radius, which is rounding; expected a "
+      return "the program closes no contact by more than 1e-12 of the particle's radius, which is round-off; expected "
+             "a "
              "deeper one, or integrator = \"direct\"";
     case Difficulty::stiff_material:
-      return "the bulk modulus is above 1e5 yield pressures, and stresses are what rounding leaves of the strains; "
+      return "the bulk modulus is above 1e5 yield pressures, and stresses are lost in the round-off of strains; "
              "expected integrator = \"cvode-bdf\"";
     case Difficulty::hardly_unique:
-      return "the program hardly determines the plastic strain any more, and rounding shows in it; expected integrator "
+      return "the program hardly determines the plastic strain, which shows round-off; expected integrator "
              "= \"cvode-bdf\"";
     case Difficulty::singular_balance:
       return "the balance of the free centre is singular, because nothing but contacts that only touch keeps it from "
@@ -20,8 +21,8 @@ std::string_view advice(Difficulty difficulty) noexcept {
       return "the limit of applicability is so near that the stiffness magnifies the errors that are tolerated; "
              "expected a larger rtol, or integrator = \"direct\"";
     case Difficulty::soft_centre:
-      return "the contacts hardly hold the free centre any more, and what is tolerated is magnified next to the fold "
-             "where they end to; expected integrator = \"direct\"";
+      return "the contacts hardly hold the free centre, and the fold nearby magnifies the errors that are tolerated; "
+             "expected integrator = \"direct\"";
   }
   return {};
 }

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
+
+#include "system/resolution.hpp"
 
 namespace monograin {
-
-constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 
 /// |actual - expected| over |expected|; 0 where both are 0.
 [[nodiscard]] inline double relative_error(double actual, double expected) noexcept {

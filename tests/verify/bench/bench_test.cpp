@@ -201,7 +201,7 @@ TEST(BenchSavings, LookBeyondTheEndOfAStep) {
   std::vector<std::string> guards;
   for (const double factor : {1.0, 1000.0}) {
     Scene scene = make_scene(scenario);
-    scene.system = looking_beyond(std::move(scene.system), factor);
+    scene.system = sampling_beyond(std::move(scene.system), factor);
     std::vector<double> y(scene.system->unknowns().size());
     std::vector<Event> log;
     std::vector<Ramp> ramps(scene.classes.size());
@@ -222,7 +222,7 @@ TEST(BenchSavings, LookBeyondStepsInEveryFormOfEveryModel) {
       if (std::string_view(integrator) == "direct" && !plain.system->is_solvable()) continue;
       SCOPED_TRACE(scenario.name + ", " + integrator);
       Scene longer = make_scene(scenario);
-      longer.system = looking_beyond(std::move(longer.system), 10.0);
+      longer.system = sampling_beyond(std::move(longer.system), 10.0);
       const RunRecord a = record_run(plain, integrator, {}, scenario.output);
       const RunRecord b = record_run(longer, integrator, {}, scenario.output);
       ASSERT_EQ(b.status, RunStatus::complete) << b.message;
