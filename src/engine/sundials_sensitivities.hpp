@@ -87,7 +87,7 @@ class SundialsSensitivities {
   ForwardSensitivities& of_;
   bool has_fixed_point_;
   SUNContext context_;
-  double rtol_;
+  double rtol_ = 0.0;
   Vectors s_, begin_, between_, atol_;
   Vectors ds_, begin_rates_;  ///< used by the implicit form only
   std::vector<double> magnitudes_;

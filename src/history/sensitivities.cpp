@@ -198,34 +198,9 @@ class Differences {
   return instants;
 }
 
-/// A copy of a table to which columns can be added.
-class Widened {
- public:
-  explicit Widened(const Table& table) : columns_(table.columns()), header_(table.header) {
-    for (std::size_t row = 0; row < table.row_count(); ++row) {
-      rows_.emplace_back(table.row(row).begin(), table.row(row).end());
-    }
-  }
-
-  void add(Column column, const std::function<double(std::size_t row)>& value) {
-    columns_.push_back(std::move(column));
-    for (std::size_t row = 0; row < rows_.size(); ++row) rows_[row].push_back(value(row));
-  }
-
-  [[nodiscard]] Table table() && {
-    Table made(std::move(columns_));
-    made.header = std::move(header_);
-    for (const std::vector<double>& row : rows_) made.append(row);
-    return made;
-  }
-
- private:
-  std::vector<Column> columns_;
-  std::vector<std::pair<std::string, std::string>> header_;
-  std::vector<std::vector<double>> rows_;
-};
-
-[[nodiscard]] double largest_of(std::size_t rows, const std::function<double(std::size_t row)>& value) {
+/// Largest magnitude of a value that rows have. @param value  row -> value
+template <class Value>
+[[nodiscard]] double largest_of(std::size_t rows, Value&& value) {
   double largest = 0.0;
   for (std::size_t row = 0; row < rows; ++row) largest = std::fmax(largest, std::abs(value(row)));
   return largest;
@@ -305,21 +280,37 @@ class Widened {
   return neighbours;
 }
 
-/// Estimated error of the differences in a column over the largest derivative: truncation, from the difference of
-/// forward and backward quotients, and noise of the runs.
-/// @param value  gives the derivative in a row
-/// @param share  step over the value of the key
-/// @param step   distance of the values of the two runs from that of the key [SI]
-/// @param noise  relative error of the computed values, over the largest one of the column
+/// Estimated error of the differences in a column over the largest derivative: truncation and noise of the runs. The
+/// bend f'' h of a row gives the truncation f''' h^2/6: with f''' = f''/p, as in a smooth curve; or with
+/// f''' = 3 f''^2/f', as next to a square root, where derivatives are large.
+/// @param derivatives  those of the column, one for each row
+/// @param share        step over the value of the key
+/// @param step         distance of the values of the two runs from that of the key [SI]
+/// @param noise        relative error of the computed values, over the largest one of the column
 [[nodiscard]] double error_of(const Differences& differences, const Table& history, std::size_t column,
-                              const std::function<double(std::size_t row)>& value, double share, double step,
-                              double noise) {
+                              std::span<const double> derivatives, double share, double step, double noise) {
   const std::size_t rows = history.row_count();
-  const double size = largest_of(rows, value);
+  const double size = largest_of(rows, [&](std::size_t row) { return derivatives[row]; });
   const double rounding = noise * largest_of(rows, [&](std::size_t row) { return history.at(row, column); }) / step;
   if (size <= 10.0 * rounding) return 0.0;  // the column does not depend on the number
-  const double bend = largest_of(rows, [&](std::size_t row) { return differences.bend(row, column); });
-  return (share * bend / 6.0 + rounding) / size;
+  const double truncation = largest_of(rows, [&](std::size_t row) {
+    const double bend = differences.bend(row, column);
+    const double slope = std::abs(derivatives[row]);
+    const bool may_be_singular = slope > 0.1 * size && bend > rounding;
+    return std::max(share * bend / 6.0, may_be_singular ? 0.5 * bend * bend / slope : 0.0);
+  });
+  return (truncation + rounding) / size;
+}
+
+/// Columns of numbers that a predicate takes. @param is_wanted  (index, column) -> bool
+template <class Predicate>
+[[nodiscard]] std::vector<std::size_t> numbers_of(const Table& table, Predicate&& is_wanted) {
+  std::vector<std::size_t> wanted;
+  for (std::size_t column = 0; column < table.columns().size(); ++column) {
+    const Column& of = table.columns()[column];
+    if (!of.holds_words() && is_wanted(column, of)) wanted.push_back(column);
+  }
+  return wanted;
 }
 
 /// Runs with a smaller and a larger value of the key.
@@ -386,44 +377,51 @@ void add_sensitivities(Run& run, const std::string& why) {
     run.record.warnings.push_back(fmt::format("derivatives are differences of more runs: {}", why));
   }
   const CheckedScenario& scenario = run.scenario;
-  const Table history = run.record.history;
-  const Table events = run.record.events;
+  Table& history = run.record.history;
+  Table& events = run.record.events;
   const Segments base(history);
   const bool is_direct = run.integrator.is_direct();
   const double noise = is_direct ? k_direct_noise : std::min(scenario.numerics.rtol, k_finest_rtol);
+  const double share = std::cbrt(noise);
   const Tolerances tolerances{std::min(scenario.numerics.rtol, k_finest_rtol),
                               std::min(scenario.numerics.atol, k_finest_atol)};
   const Output output{.points = 0, .times = instants_of(base, history.row_count())};
-  Widened of_history(history);
-  Widened of_events(events);
+  const std::vector<std::size_t> of_history =
+      numbers_of(history, [](std::size_t column, const Column&) { return column != k_step && column != k_side; });
+  const std::vector<std::size_t> of_events =
+      numbers_of(events, [](std::size_t, const Column& column) { return column.name != "step"; });
+  std::vector<std::unique_ptr<Pair>> pairs;
+  std::vector<std::optional<Differences>> differences;
+  std::vector<Column> row_columns;
+  std::vector<std::vector<double>> derivatives;  // of the rows, one list for each of those columns
+  std::vector<Column> event_columns;
   for (const SensitivityKey& key : scenario.sensitivities) {
-    const double share = std::cbrt(noise);
     const double step = share * std::abs(key.value);
     const auto run_with = [&](double number) {
       Scene scene = make_scene(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1)));
       return record_run(scene, run.integrator.used, tolerances, output);
     };
-    const auto beside = runs_beside(key, step, run_with, run.record.warnings);
-    std::optional<Differences> differences;
-    if (beside) differences.emplace(history, base, events, beside->lower, beside->upper, 2.0 * step);
-    double error = 0.0;
-    for (std::size_t column = 0; column < history.columns().size(); ++column) {
-      const auto& [name, unit, words] = history.columns()[column];
-      if (!words.empty() || column == k_step || column == k_side) continue;
-      const auto value = [&](std::size_t row) { return differences ? differences->at_row(row, column) : k_nan; };
-      of_history.add(derivative_column(name, unit, key), value);
-      if (differences) error = std::max(error, error_of(*differences, history, column, value, share, step, noise));
+    const Pair* const pair = pairs.emplace_back(runs_beside(key, step, run_with, run.record.warnings)).get();
+    auto& of_key = differences.emplace_back();
+    if (pair != nullptr) of_key.emplace(history, base, events, pair->lower, pair->upper, 2.0 * step);
+    double error = pair != nullptr ? 0.0 : k_nan;
+    for (const std::size_t column : of_history) {
+      row_columns.push_back(derivative_column(history.columns()[column].name, history.columns()[column].unit, key));
+      auto& values = derivatives.emplace_back(history.row_count(), k_nan);
+      if (!of_key) continue;
+      for (std::size_t row = 0; row < values.size(); ++row) values[row] = of_key->at_row(row, column);
+      error = std::max(error, error_of(*of_key, history, column, values, share, step, noise));
     }
-    for (std::size_t column = 0; column < events.columns().size(); ++column) {
-      const auto& [name, unit, words] = events.columns()[column];
-      if (!words.empty() || name == "step") continue;
-      of_events.add(derivative_column(name, unit, key),
-                    [&](std::size_t row) { return differences ? differences->at_event(row, column) : k_nan; });
+    for (const std::size_t column : of_events) {
+      event_columns.push_back(derivative_column(events.columns()[column].name, events.columns()[column].unit, key));
     }
-    run.sensitivities.push_back({key.key, key.value, step, differences ? error : k_nan, false, why});
+    run.sensitivities.push_back({key.key, key.value, step, error, false, why});
   }
-  run.record.history = std::move(of_history).table();
-  run.record.events = std::move(of_events).table();
+  history.append_columns(row_columns, [&](std::size_t row, std::size_t c) { return derivatives[c][row]; });
+  events.append_columns(event_columns, [&](std::size_t row, std::size_t c) {
+    const auto& of_key = differences[c / of_events.size()];
+    return of_key ? of_key->at_event(row, of_events[c % of_events.size()]) : k_nan;
+  });
 }
 
 }  // namespace monograin

@@ -49,6 +49,19 @@ class Table {
   void append(std::span<const double> row);
   /// Reserves space for `count` further rows, so that appending them does not allocate.
   void reserve_rows(std::size_t count);
+  /// Appends columns.
+  /// @param value  (row, index among the new columns) -> value
+  template <class Value>
+  void append_columns(const std::vector<Column>& columns, Value&& value) {
+    std::vector<double> wide;
+    wide.reserve(row_count() * (columns_.size() + columns.size()));
+    for (std::size_t r = 0; r < row_count(); ++r) {
+      wide.insert(wide.end(), row(r).begin(), row(r).end());
+      for (std::size_t c = 0; c < columns.size(); ++c) wide.push_back(value(r, c));
+    }
+    columns_.insert(columns_.end(), columns.begin(), columns.end());
+    values_ = std::move(wide);
+  }
 
   /// Index of the column with that name or heading ("axial.force" or "axial.force[N]"), if there is one.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const noexcept;

@@ -106,6 +106,33 @@ TEST(Sensitivities, HaveTheErrorThatTheySay) {
   EXPECT_GT(error, 1e-4 * run.sensitivities[1].error);
 }
 
+TEST(Sensitivities, HaveTheErrorThatTheySayNextToALimit) {
+  const std::string text = R"toml(model = "nonlocal"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "1.85 MPa"
+poisson_ratio = 0.48
+[loading]
+configuration = "oblique-die"
+steps = [{ displacement = "0.4 R0", duration = "1 s" }]
+[output]
+points = 10
+[sensitivities]
+keys = ["material.poisson_ratio"]
+)toml";
+  const std::string name = "d(lateral-x.force)/d(material.poisson_ratio)";
+  const std::vector<double> close = column(run_of(text), name);
+  const HistoryRun run = run_of(text, {"numerics.integrator=odeint-dopri5"});
+  const std::vector<double> wide = column(run, name);
+  double error = 0.0;
+  for (std::size_t row = 0; row < close.size(); ++row) error = std::fmax(error, std::abs(wide[row] - close[row]));
+  error /= largest(close);
+  EXPECT_GT(error, 1e-6) << "ten times the step of the solved states shows the curvature there";
+  EXPECT_LT(error, run.sensitivities[0].error);
+  EXPECT_GT(error, 1e-2 * run.sensitivities[0].error);
+}
+
 const std::vector<std::string> k_forward{"numerics.integrator=cvode-bdf", "numerics.integrator=cvode-adams",
                                          "numerics.integrator=ida"};
 
@@ -163,8 +190,10 @@ TEST(Sensitivities, AreThoseOfTheIntegratedForms) {
   const HistoryRun direct = run_of(k_die);
   for (const char* integrator : {"cvode-bdf", "cvode-adams", "ida", "odeint-dopri5"}) {
     const HistoryRun integrated = run_of(k_die, {"numerics.integrator=" + std::string(integrator)});
-    EXPECT_EQ(integrated.sensitivities[0].is_forward, std::string(integrator) != "odeint-dopri5");
-    EXPECT_LT(integrated.sensitivities[0].error, 2e-6);
+    const bool is_forward = std::string(integrator) != "odeint-dopri5";
+    EXPECT_EQ(integrated.sensitivities[0].is_forward, is_forward);
+    // Differences have to say how far off the contact radius is in the first row of the reload, which is 2.9e-5.
+    EXPECT_LT(integrated.sensitivities[0].error, is_forward ? 2e-6 : 4e-5);
     for (const char* name : {"time", "apparent_radius", "lateral.force", "work"}) {
       const std::string heading = "d(" + std::string(name) + ")/d(material.yield_stress)";
       const std::vector<double> expected = column(direct, heading);
