@@ -35,8 +35,8 @@ constexpr double k_most_growth = 2.0;
 constexpr double k_most_shrinkage = 0.2;
 constexpr double k_safety = 0.85;
 // Tolerance of a piece's series, over the work: rtol times the larger of rtol and k_share_of_work, but at least
-// k_rounding_of_work. Next to a singularity of the work, as at a first touch, the error is up to a hundred times that.
-constexpr double k_rounding_of_work = 1e-16;
+// k_round_off_of_work. Next to a singularity of the work, as at a first touch, the error is up to a hundred times that.
+constexpr double k_round_off_of_work = 1e-16;
 constexpr double k_share_of_work = 1e-3;
 // If the closed form of the work is costly and a step has at least k_many_rows rows, the rows take the work from series
 // over panels of a piece, accurate to k_panel_accuracy over the work. A panel no longer than k_shortest_panel (step
@@ -62,7 +62,7 @@ constexpr double k_spring = 1e-8;
 // passage from one branch to another is a jump or behaves like a square root, and its series converges more slowly.
 constexpr double k_unresolved = 1e-2;
 // Smaller last terms, over the unknown's scale, are round-off and pass that test.
-constexpr double k_rounding_of_branch = 1e-8;
+constexpr double k_round_off_of_branch = 1e-8;
 // The quadrature does not refine pieces shorter than this (step coordinates): their error is below the round-off of the
 // whole work.
 constexpr double k_smallest_quadrature = 1e-6;
@@ -114,7 +114,7 @@ class Direct final : public EventLocator {
   Direct(HybridSystem& system, double rtol, GuardSet& guard_set, std::size_t rows)
       : EventLocator(system, guard_set, k_most_nodes),
         has_many_rows_(rows >= k_many_rows),
-        work_accuracy_(std::max(k_rounding_of_work, rtol * std::max(rtol, k_share_of_work))) {
+        work_accuracy_(std::max(k_round_off_of_work, rtol * std::max(rtol, k_share_of_work))) {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end() && system.has_energies())
@@ -135,7 +135,7 @@ class Direct final : public EventLocator {
   void begin(double xi, std::span<const double> y) override {
     segment_begin_ = xi;
     refusals_ = 0;
-    rounding_ = {};
+    round_off_ = {};
     is_closed_ = !quadrature_;
     has_panels_ = false;
     if (const auto primitive = system_.closed_quadrature(xi, y); quadrature_ && primitive) {
@@ -270,10 +270,10 @@ class Direct final : public EventLocator {
     if (!is_closed_) {
       work_.fit(*nodes_, slopes_[*quadrature_]);
       const double length = piece_length();
-      const double reach = work_reach(begin_state_[*quadrature_], length, work_accuracy_, rounding_.known());
+      const double reach = work_reach(begin_state_[*quadrature_], length, work_accuracy_, round_off_.known());
       factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
       const bool is_too_long = reach < 1.0 && length > k_smallest_quadrature;
-      rounding_.see(work_, begin_, length, is_too_long);
+      round_off_.see(work_, begin_, length, is_too_long);
       if (is_too_long) return false;
     }
     move_end(piece_end_);
@@ -303,12 +303,12 @@ class Direct final : public EventLocator {
   /// @param length    of the interval, in step coordinates
   /// @param accuracy  tolerated error, over the work
   /// @param rounding  known round-off of the rates
-  [[nodiscard]] double work_reach(double work, double length, double accuracy, double rounding = 0.0) const {
+  [[nodiscard]] double work_reach(double work, double length, double accuracy, double round_off = 0.0) const {
     const double scale = std::max(std::abs(work), system_.unknowns()[*quadrature_].scale);
     // The tolerance itself must not count as round-off: terms next to a kink fall slowly, and the sum of those left out
     // exceeds the last ones kept.
-    const double least = k_noise_of_nothing * k_rounding_of_work * scale / length;
-    return work_.reach(2.0 * accuracy * scale / length, std::max(rounding, least));
+    const double least = k_noise_of_nothing * k_round_off_of_work * scale / length;
+    return work_.reach(2.0 * accuracy * scale / length, std::max(round_off, least));
   }
 
   /// True if the states of the piece lie on another branch than its beginning: an event there comes with a jump of the
@@ -344,7 +344,7 @@ class Direct final : public EventLocator {
     if (end_ - begin_ <= least_progress(begin_)) return true;
     if (end_ - begin_ < k_deep_inside * length) return false;
     for (std::size_t k = 0; k < series_.size(); ++k) {
-      if (series_[k].rest(k_rounding_of_branch * system_.unknowns()[k].scale) > k_unresolved) return false;
+      if (series_[k].rest(k_round_off_of_branch * system_.unknowns()[k].scale) > k_unresolved) return false;
     }
     return true;
   }
@@ -485,7 +485,7 @@ class Direct final : public EventLocator {
   double length_ = 0.0;                  ///< length of the next piece
   double piece_end_ = 0.0;               ///< where the piece would end without an event
   LegendreSeries work_;                  ///< rate of the quadrature
-  RateRounding rounding_;                ///< round-off of the rates in this segment
+  RateRounding round_off_;               ///< round-off of the rates in this segment
   std::size_t integrated_ = 0;           ///< number of unknowns with rates(): the first ones
   std::vector<LegendreSamples> gains_;   ///< change of each unknown from the beginning of the piece to its nodes
   std::vector<LegendreSamples> slopes_;  ///< rates of the integrated unknowns at the nodes

@@ -17,12 +17,12 @@ namespace {
 
 // Between evaluations nearer to each other than this (step coordinates), guards are not searched for two crossings.
 constexpr double k_smallest_hidden = 1e-6;
-// A guard counts as zero at its root below k_rounding_of_guard times the larger of its values at the bracket's ends,
+// A guard counts as zero at its root below k_round_off_of_guard times the larger of its values at the bracket's ends,
 // and below k_most_of_guard times the smaller one.
-constexpr double k_rounding_of_guard = 1e-14;
+constexpr double k_round_off_of_guard = 1e-14;
 constexpr double k_most_of_guard = 1e-12;
 // First distance, over xi, by which a root short of zero is moved on.
-constexpr double k_rounding_of_root = 1e-15;
+constexpr double k_round_off_of_root = 1e-15;
 constexpr double k_share_of_progress = 1e-2;  // width of the bracket of a root, over least_progress()
 
 bool crosses(int direction, double before, double after) noexcept {
@@ -286,13 +286,13 @@ double EventLocator::polish(std::size_t guard, const View& before, const View& a
   // If the evaluations are as near as the round-off of xi, both are the root.
   if (after.values[guard] == 0.0 || !(after.xi > before.xi)) return after.xi;
   const auto [smaller, larger] = std::minmax({std::abs(before.values[guard]), std::abs(after.values[guard])});
-  const double rounding = std::min(k_rounding_of_guard * larger, k_most_of_guard * smaller);
+  const double round_off = std::min(k_round_off_of_guard * larger, k_most_of_guard * smaller);
   double value = 0.0;
   const auto function = [&](double xi) {
     state_at(xi, guess_);
     evaluate_guards(xi, guess_, values_);
     value = values_[guard];
-    return std::abs(value) <= rounding ? 0.0 : value;
+    return std::abs(value) <= round_off ? 0.0 : value;
   };
   std::uintmax_t iterations = 100;
   const auto [below, above] = boost::math::tools::toms748_solve(
@@ -301,7 +301,7 @@ double EventLocator::polish(std::size_t guard, const View& before, const View& a
   if (below < above) return above;
   double root = above;
   const auto is_short = [&] { return value != 0.0 && (value > 0.0) == (before.values[guard] > 0.0); };
-  for (double ahead = k_rounding_of_root * root; is_short(); ahead *= 4.0) {
+  for (double ahead = k_round_off_of_root * root; is_short(); ahead *= 4.0) {
     root += ahead;
     if (root >= after.xi) return after.xi;
     function(root);

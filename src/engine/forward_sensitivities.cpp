@@ -465,7 +465,7 @@ void ForwardSensitivities::add_to_row(Number& number, double of_time, double bey
 
 /// Appends to the row the errors that round-off of the instant makes in the derivatives of a number. An observable that
 /// begins like a square root at an event is known there only to the square root of round-off.
-void ForwardSensitivities::add_rounding_to_row(Number& number) {
+void ForwardSensitivities::add_round_off_to_row(Number& number) {
   const std::size_t begin = row_.size();
   row_.resize(begin + 1 + columns_.size(), 0.0);
   Side& side = number.sides[1];
@@ -479,8 +479,8 @@ void ForwardSensitivities::add_rounding_to_row(Number& number) {
       side.system().complete(side.xi + length, state_);
       side.system().observe(side.xi + length, state_, values_[0]);
       for (std::size_t c = 0; c < columns_.size(); ++c) {
-        double& rounding = row_[begin + 1 + c];
-        rounding = std::max(rounding, std::abs(values_[0][columns_[c]] - values_[1][columns_[c]]) / number.step);
+        double& round_off = row_[begin + 1 + c];
+        round_off = std::max(round_off, std::abs(values_[0][columns_[c]] - values_[1][columns_[c]]) / number.step);
       }
     }
   } catch (const std::domain_error&) {
@@ -494,7 +494,7 @@ std::span<const double> ForwardSensitivities::row_here() {
     for (Number& number : numbers_) {
       add_to_row(number, (number.sides[1].time() - number.sides[0].time()) / (2.0 * number.step));
     }
-    for (Number& number : numbers_) add_rounding_to_row(number);
+    for (Number& number : numbers_) add_round_off_to_row(number);
   });
   return row_;
 }

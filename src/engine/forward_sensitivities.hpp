@@ -152,7 +152,7 @@ class ForwardSensitivities {
   void resume();
   void find_slopes(double xi, std::span<const double> y);
   void observe(Side& side);
-  void add_rounding_to_row(Number& number);
+  void add_round_off_to_row(Number& number);
   void add_to_row(Number& number, double of_time, double beyond_slopes = 0.0);
 
   HybridSystem& base_;

@@ -31,7 +31,7 @@ constexpr double k_slave_tolerance = 1e-4;  // of dependent unknowns: loose, but
 // differences of many steps show nothing but these errors: the order stays low, and steps do not become longer.
 constexpr double k_left_by_corrector = 0.1;
 constexpr double k_most_left_by_corrector = 0.33;
-constexpr double k_left_by_rounding = 3e-14;
+constexpr double k_left_by_round_off = 3e-14;
 // Steps of order 1 in a row, each after a failed error test, after which the method is restarted: it would not rise to
 // a higher order by itself. While steps are alike, differences of fast-changing unknowns do not show their errors; in a
 // longer step they show all of them, and it fails.
@@ -52,7 +52,7 @@ class Ida final : public Integrator {
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
       // A dependent unknown has no error of its own: it has little weight, and is completed wherever it is used.
       const double absolute = unknowns[k].is_dependent ? k_slave_tolerance : of_step(tolerances).atol;
-      view(least_atol_.get())[k] = std::max(absolute * unknowns[k].scale, k_above_rounding * unknowns[k].sum_scale);
+      view(least_atol_.get())[k] = std::max(absolute * unknowns[k].scale, k_above_round_off * unknowns[k].sum_scale);
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }
     if (sensitivities != nullptr) {
@@ -66,7 +66,8 @@ class Ida final : public Integrator {
     check("IDASetMaxNumSteps", IDASetMaxNumSteps(memory_.get(), k_most_internal_steps));
     // If a segment starts at zero force, its first steps are smaller than IDA's guess by many orders of magnitude.
     check("IDASetMaxErrTestFails", IDASetMaxErrTestFails(memory_.get(), k_most_failures));
-    const double left = std::clamp(k_left_by_rounding / tolerances.rtol, k_left_by_corrector, k_most_left_by_corrector);
+    const double left =
+        std::clamp(k_left_by_round_off / tolerances.rtol, k_left_by_corrector, k_most_left_by_corrector);
     check("IDASetNonlinConvCoef", IDASetNonlinConvCoef(memory_.get(), left));
     check("IDASetMaxConvFails", IDASetMaxConvFails(memory_.get(), k_most_failures));
     check("IDASetId", IDASetId(memory_.get(), id_.get()));
@@ -203,9 +204,9 @@ class Ida final : public Integrator {
   void raise_tolerances() {
     const auto rates = view(dy_.get());
     for (std::size_t k = 0; k < rates.size(); ++k) {
-      const double rounding = k_round_off / k_left_by_corrector * std::abs(rates[k]);
+      const double round_off = k_round_off / k_left_by_corrector * std::abs(rates[k]);
       double& atol = view(atol_.get())[k];
-      if (std::isfinite(rounding)) atol = std::max(atol, rounding);
+      if (std::isfinite(round_off)) atol = std::max(atol, round_off);
     }
   }
 

@@ -15,7 +15,7 @@ namespace monograin::sundials_boundary {
 namespace {
 
 // Accuracy of the libraries' roots, over the sum of the end and the length of the step.
-constexpr double k_rounding_of_root = 100.0 * std::numeric_limits<double>::epsilon();
+constexpr double k_round_off_of_root = 100.0 * std::numeric_limits<double>::epsilon();
 
 bool crosses(int direction, double before, double after, double tolerance) noexcept {
   const bool rises = before < -tolerance && after >= 0.0;
@@ -87,7 +87,7 @@ double polished_root(const GuardSet& guard_set, std::span<const std::size_t> fir
       values_at(xi, values);
       return std::ranges::all_of(fired, [&](std::size_t g) { return values[g] * beyond[g] >= 0.0; });
     };
-    double below = std::max(begin, end - 2.0 * k_rounding_of_root * (end + (end - begin)));
+    double below = std::max(begin, end - 2.0 * k_round_off_of_root * (end + (end - begin)));
     if (is_beyond(below)) return end;
     double above = end;
     for (double middle = std::midpoint(below, above); below < middle && middle < above;

@@ -382,8 +382,8 @@ class SundialsOde final : public Integrator {
     bool is_off = false;
     for (std::size_t k = 0; k < state.size(); ++k) {
       const double size = std::max(std::abs(state[k]), form_.unknown(k).scale);
-      const double rounding = k_round_off * std::abs(view(rates_.get())[k]) / k_share_of_many;
-      is_off = is_off || std::abs(better[k] - state[k]) > std::max(tolerances_.rtol * size, rounding);
+      const double round_off = k_round_off * std::abs(view(rates_.get())[k]) / k_share_of_many;
+      is_off = is_off || std::abs(better[k] - state[k]) > std::max(tolerances_.rtol * size, round_off);
     }
     if (is_off) std::ranges::copy(better, state.begin());
     return is_off;
@@ -423,8 +423,8 @@ class SundialsOde final : public Integrator {
     const auto values = view(y);
     const auto before = view(dy);
     const double norm = N_VWrmsNorm(dy, ode.weights_.get());
-    const double rounding = 1e3 * k_epsilon * static_cast<double>(values.size()) * std::abs(step) * norm;
-    const double least = norm > 0.0 ? rounding : 1.0;
+    const double round_off = 1e3 * k_epsilon * static_cast<double>(values.size()) * std::abs(step) * norm;
+    const double least = norm > 0.0 ? round_off : 1.0;
     for (std::size_t j = 0; j < values.size(); ++j) {
       const double value = values[j];
       const double tolerated = 1.0 / view(ode.weights_.get())[j];

@@ -52,7 +52,7 @@ template <class Library>
 void SundialsSensitivities<Library>::raise_tolerances(std::size_t number) {
   const auto atol = view(atol_[number].get());
   for (std::size_t i = 0; i < atol.size(); ++i) {
-    atol[i] = std::max(atol[i], sundials_boundary::k_above_rounding * of_.scale(i) / of_.step(number));
+    atol[i] = std::max(atol[i], sundials_boundary::k_above_round_off * of_.scale(i) / of_.step(number));
   }
 }
 

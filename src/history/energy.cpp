@@ -16,7 +16,7 @@ constexpr double k_worth_a_warning = 1e-6;
 // Bound of the global error of an integration with error control, over its rtol.
 constexpr double k_error_over_rtol = 100.0;
 // Bound of the round-off of an overlap over R0: an overlap is a difference of a few lengths of the order of R0.
-constexpr double k_overlap_rounding = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double k_overlap_round_off = 16.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -31,13 +31,13 @@ std::optional<DissipationFall> largest_dissipation_fall(const Table& history, do
   DissipationFall largest;
   double greatest = -std::numeric_limits<double>::infinity();
   double time_of_greatest = 0.0;
-  double rounding = 0.0;
+  double round_off = 0.0;
   for (std::size_t row = 0; row < history.row_count(); ++row) {
     const double dissipation = history.at(row, *work) - history.at(row, *stored);
     largest.scale = std::max({largest.scale, std::abs(history.at(row, *work)), std::abs(history.at(row, *stored))});
     double force = 0.0;
     for (const std::size_t c : forces) force += std::abs(history.at(row, c));
-    rounding = std::max(rounding, k_overlap_rounding * force * radius);
+    round_off = std::max(round_off, k_overlap_round_off * force * radius);
     if (dissipation > greatest) {
       greatest = dissipation;
       time_of_greatest = history.at(row, 0);
@@ -47,7 +47,7 @@ std::optional<DissipationFall> largest_dissipation_fall(const Table& history, do
       largest.to = history.at(row, 0);
     }
   }
-  if (!(largest.amount > rounding)) return std::nullopt;
+  if (!(largest.amount > round_off)) return std::nullopt;
   return largest;
 }
 

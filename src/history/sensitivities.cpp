@@ -221,7 +221,7 @@ template <class Value>
 /// Removes the last columns of a table, which hold the round-off of the derivatives in the columns before them. A
 /// derivative becomes NaN if its round-off exceeds 1e-6 of the largest derivative in its column.
 /// @param largest  largest derivative between events, one for each column of derivatives
-[[nodiscard]] Table without_roundings(const Table& wide, const std::vector<double>& largest) {
+[[nodiscard]] Table without_round_off(const Table& wide, const std::vector<double>& largest) {
   constexpr double k_counts = 1e-6;
   const std::size_t count = largest.size();
   const std::size_t width = wide.columns().size() - count;
@@ -250,7 +250,7 @@ template <class Value>
 
 /// Relative round-off of the derivatives with respect to a key: the worst column counts, each over its largest
 /// derivative.
-[[nodiscard]] double rounding_of(const Table& history, const SensitivityKey& key, double step) {
+[[nodiscard]] double round_off_of(const Table& history, const SensitivityKey& key, double step) {
   double result = 0.0;
   for (std::size_t column = 0; column < history.columns().size(); ++column) {
     const Column& of = history.columns()[column];
@@ -260,8 +260,8 @@ template <class Value>
       return largest_of(history.row_count(), [&](std::size_t row) { return history.at(row, c); });
     };
     const double size = largest(*derivative);
-    const double rounding = k_direct_noise * largest(column) / step;
-    if (size > 10.0 * rounding) result = std::max(result, rounding / size);
+    const double round_off = k_direct_noise * largest(column) / step;
+    if (size > 10.0 * round_off) result = std::max(result, round_off / size);
   }
   return result;
 }
@@ -291,15 +291,15 @@ template <class Value>
                               std::span<const double> derivatives, double share, double step, double noise) {
   const std::size_t rows = history.row_count();
   const double size = largest_of(rows, [&](std::size_t row) { return derivatives[row]; });
-  const double rounding = noise * largest_of(rows, [&](std::size_t row) { return history.at(row, column); }) / step;
-  if (size <= 10.0 * rounding) return 0.0;  // the column does not depend on the number
+  const double round_off = noise * largest_of(rows, [&](std::size_t row) { return history.at(row, column); }) / step;
+  if (size <= 10.0 * round_off) return 0.0;  // the column does not depend on the number
   const double truncation = largest_of(rows, [&](std::size_t row) {
     const double bend = differences.bend(row, column);
     const double slope = std::abs(derivatives[row]);
-    const bool may_be_singular = slope > 0.1 * size && bend > rounding;
+    const bool may_be_singular = slope > 0.1 * size && bend > round_off;
     return std::max(share * bend / 6.0, may_be_singular ? 0.5 * bend * bend / slope : 0.0);
   });
-  return (truncation + rounding) / size;
+  return (truncation + round_off) / size;
 }
 
 /// Columns of numbers that a predicate takes. @param is_wanted  (index, column) -> bool
@@ -345,19 +345,19 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
   try {
     ForwardSensitivities carried(*scene.system, neighbours_of(scenario));
     std::vector<Column> columns = forward_columns(scenario, *scene.system);
-    const std::vector<Column> of_rounding = columns;
-    columns.insert(columns.end(), of_rounding.begin(), of_rounding.end());
+    const std::vector<Column> of_round_off = columns;
+    columns.insert(columns.end(), of_round_off.begin(), of_round_off.end());
     RunRecord record = record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol},
                                   scenario.output, carried, columns);
     if (record.status == RunStatus::complete) {
       const std::vector<double> largest = largest_between_events(record.history, columns.size() / 2);
-      record.history = without_roundings(record.history, largest);
-      record.events = without_roundings(record.events, largest);
+      record.history = without_round_off(record.history, largest);
+      record.events = without_round_off(record.events, largest);
       run.record = std::move(record);
       const double over_rtol = run.integrator.used == integrators::k_ida ? k_forward_error_of_ida : k_forward_error;
       for (const SensitivityKey& key : scenario.sensitivities) {
         const double step = k_share * std::abs(key.value);
-        const double error = over_rtol * scenario.numerics.rtol + rounding_of(run.record.history, key, step);
+        const double error = over_rtol * scenario.numerics.rtol + round_off_of(run.record.history, key, step);
         run.sensitivities.push_back({key.key, key.value, step, error, true, "integrated with the run"});
       }
       return std::nullopt;

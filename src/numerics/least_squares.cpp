@@ -34,9 +34,9 @@ constexpr double k_end_of_z = std::numbers::pi / 2.0;
 constexpr double k_scan_share = 0.5;  // share of the draw in the progress of the search
 constexpr double k_no_cost = std::numeric_limits<double>::infinity();
 constexpr int k_refinements = 3;
-constexpr double k_small_step = 1e-4;         // a Gauss-Newton step longer than this in z shows that no minimum is near
-constexpr double k_rounding_of_cost = 1e-12;  // over the cost
-constexpr double k_kinked = 1e-5;             // fall of the cost predicted at a smooth minimum, over the cost, at most
+constexpr double k_small_step = 1e-4;  // a Gauss-Newton step longer than this in z shows that no minimum is near
+constexpr double k_round_off_of_cost = 1e-12;  // over the cost
+constexpr double k_kinked = 1e-5;              // fall of the cost predicted at a smooth minimum, over the cost, at most
 constexpr double k_margin_of_noise = 1e3;
 constexpr double k_longest_step = 0.1;       // side of the first simplex, in z
 constexpr std::size_t k_simplex_steps = 60;  // for each parameter
@@ -425,7 +425,7 @@ class Search {
       Place next = place;
       for (std::size_t k = 0; k < size_; ++k) next.z[k] = folded(place.z[k] + step[static_cast<Eigen::Index>(k)]);
       next.cost = cost_at(next);
-      if (!(next.cost <= place.cost * (1.0 + k_rounding_of_cost))) break;
+      if (!(next.cost <= place.cost * (1.0 + k_round_off_of_cost))) break;
       place = std::move(next);
       if (step.norm() <= nearly_exact()) place.has_converged = true;
       if (step.norm() <= k_exact_step) break;
@@ -444,8 +444,8 @@ class Search {
     const Eigen::Map<const Eigen::VectorXd> residuals(polish.values.data(), count);
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(polish.jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
     const double predicted = (svd.matrixU().transpose() * residuals).squaredNorm();
-    const double rounding = k_margin_of_noise * problem_.noise * polish.jacobian.norm();
-    if (predicted <= k_kinked * place.cost || place.cost <= rounding * rounding) return place;
+    const double round_off = k_margin_of_noise * problem_.noise * polish.jacobian.norm();
+    if (predicted <= k_kinked * place.cost || place.cost <= round_off * round_off) return place;
     const double s = std::sqrt(place.cost / static_cast<double>(count - static_cast<Eigen::Index>(size_)));
     Descent descent{*this, place, svd.matrixV(), place, {}};
     for (Eigen::Index j = 0; j < svd.singularValues().size(); ++j) {
@@ -543,7 +543,7 @@ class Search {
   /// of the box for its own minimum.
   [[nodiscard]] LeastSquaresSolution settled_at_bounds(const Place& best, const std::vector<Place>& all) {
     LeastSquaresSolution found = solution(best, all);
-    const double rounding = problem_.noise * problem_.noise * static_cast<double>(problem_.residual_count);
+    const double round_off = problem_.noise * problem_.noise * static_cast<double>(problem_.residual_count);
     for (std::size_t k = 0; k < size_; ++k) {
       const double share = share_at(best.z[k]);
       if (share > k_near_bound && share < 1.0 - k_near_bound) continue;
@@ -553,7 +553,7 @@ class Search {
       evaluations_ += face ? face->evaluations : 1;
       failures_ += face ? face->failures : 1;
       constexpr double k_same_cost = 1e-9;
-      if (!face || face->cost > found.cost * (1.0 + k_same_cost) + rounding) continue;
+      if (!face || face->cost > found.cost * (1.0 + k_same_cost) + round_off) continue;
       const auto place = static_cast<std::ptrdiff_t>(k);
       using Bound = LeastSquaresSolution::Bound;
       face->parameters.insert(face->parameters.begin() + place, bound);

@@ -143,11 +143,11 @@ double LegendreSeries::rest(double negligible) const noexcept {
   return last > negligible ? last / largest : 0.0;
 }
 
-double LegendreSeries::reach(double negligible, double rounding) const noexcept {
+double LegendreSeries::reach(double negligible, double round_off) const noexcept {
   const double whole = largest();
   const double last = tail();
   const double allowed = std::max(k_tail * whole, 0.5 * negligible);
-  const double noise = std::max(k_noise * k_tail * whole, rounding);
+  const double noise = std::max(k_noise * k_tail * whole, round_off);
   const bool is_noise = largest_of(count_ / 2, count_ - 2) <= k_flat * last && last <= noise;
   if (is_noise || last == 0.0) return k_farthest;
   return std::pow(allowed / last, 1.0 / static_cast<double>(count_ - 1));

@@ -56,7 +56,7 @@ class LegendreSeries {
   /// be proportional to the length to the power of its degree.
   /// @param negligible  error of the integral over [-1, 1] that is tolerated, however small the integral
   /// @param rounding    largest last coefficients that count as round-off if the second half of the series is flat
-  [[nodiscard]] double reach(double negligible, double rounding = 0.0) const noexcept;
+  [[nodiscard]] double reach(double negligible, double round_off = 0.0) const noexcept;
   /// Sum of the last two coefficients' magnitudes.
   [[nodiscard]] double tail() const noexcept;
   /// Largest magnitude of a coefficient.

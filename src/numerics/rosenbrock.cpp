@@ -22,8 +22,8 @@ constexpr double k_most_growth = 5.0;
 
 class Controlled : public odeint::rosenbrock4_controller<Method> {
  public:
-  Controlled(double atol, double rtol, double rounding)
-      : odeint::rosenbrock4_controller<Method>(atol, rtol), rounding_(rounding) {}
+  Controlled(double atol, double rtol, double round_off)
+      : odeint::rosenbrock4_controller<Method>(atol, rtol), round_off_(round_off) {}
 
   /// Largest error in a step that the library has refused, over tolerances no finer than the round-off of xi times the
   /// rate.
@@ -33,13 +33,13 @@ class Controlled : public odeint::rosenbrock4_controller<Method> {
     for (std::size_t i = 0; i < begin.size(); ++i) {
       const double size = std::max(std::abs(begin[i]), std::abs(end[i]));
       const double rate = std::abs(end[i] - begin[i]) / step;
-      largest = std::max(largest, std::abs(m_xerr.m_v[i]) / std::max(m_atol + m_rtol * size, rounding_ * rate));
+      largest = std::max(largest, std::abs(m_xerr.m_v[i]) / std::max(m_atol + m_rtol * size, round_off_ * rate));
     }
     return largest;
   }
 
  private:
-  double rounding_;
+  double round_off_;
 };
 
 }  // namespace
@@ -48,9 +48,9 @@ struct Rosenbrock4::Implementation {
   using State = Method::state_type;
   using Matrix = Method::matrix_type;
 
-  Implementation(const Equations& equations_, double atol, double rtol, double rounding)
+  Implementation(const Equations& equations_, double atol, double rtol, double round_off)
       : equations(equations_),
-        controlled(atol, rtol, rounding),
+        controlled(atol, rtol, round_off),
         old(equations.size, 0.0),
         now(equations.size, 0.0),
         between(equations.size, 0.0),
@@ -79,8 +79,8 @@ struct Rosenbrock4::Implementation {
   std::vector<double> by_z, by_xi_of_step;
 };
 
-Rosenbrock4::Rosenbrock4(const Equations& equations, double atol, double rtol, double rounding)
-    : implementation_(std::make_unique<Implementation>(equations, atol, rtol, rounding)) {}
+Rosenbrock4::Rosenbrock4(const Equations& equations, double atol, double rtol, double round_off)
+    : implementation_(std::make_unique<Implementation>(equations, atol, rtol, round_off)) {}
 
 Rosenbrock4::~Rosenbrock4() = default;
 

@@ -18,7 +18,7 @@ class Rosenbrock4 {
   };
 
   /// @param rounding  round-off of xi; errors up to it times the rates are tolerated
-  Rosenbrock4(const Equations& equations, double atol, double rtol, double rounding);
+  Rosenbrock4(const Equations& equations, double atol, double rtol, double round_off);
   ~Rosenbrock4();
   Rosenbrock4(const Rosenbrock4&) = delete;
   Rosenbrock4& operator=(const Rosenbrock4&) = delete;

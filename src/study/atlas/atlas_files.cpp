@@ -98,7 +98,7 @@ void append_headings(const ComparisonRow& quantity, Row& headings) {
 }
 
 /// Half a unit in the last digit of a printed number: its largest distance from the value that it rounds.
-[[nodiscard]] double rounding_of(const std::string& printed) {
+[[nodiscard]] double round_off_of(const std::string& printed) {
   const std::size_t point = printed.find('.');
   const std::size_t decimals = point == std::string::npos ? 0 : printed.size() - point - 1;
   return 0.5 * std::pow(10.0, -static_cast<double>(decimals));
@@ -145,7 +145,7 @@ void append_headings(const ComparisonRow& quantity, Row& headings) {
   rows.push_back({"quantity", "computed", "printed", "difference", "rounded to it", "remark"});
   for (const ValueRow& row : table.rows) {
     const double difference = row.value - printed_number(row);
-    const bool is_rounded_to = std::abs(difference) <= k_on_the_edge * rounding_of(row.printed);
+    const bool is_rounded_to = std::abs(difference) <= k_on_the_edge * round_off_of(row.printed);
     rows.push_back({row.label, fmt::format("{:.8g}", row.value), row.printed.empty() ? "-" : row.printed,
                     shown_number(difference, 3), row.printed.empty() ? "-" : (is_rounded_to ? "yes" : "no"),
                     row.remark});

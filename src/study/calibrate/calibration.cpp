@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t k_curve_points = 400;  // points of a fitted curve, about, if the data have fewer
 constexpr int k_most_rounds = 50;            // repetitions of fit and estimate of its noise
 constexpr int k_most_better = 3;             // better fits that the search for intervals may find
-constexpr double k_margin_of_rounding = 1e3;
+constexpr double k_margin_of_round_off = 1e3;
 constexpr double k_bad_condition = 1e3;  // a correlation of 1 - 2e-6
 constexpr std::size_t k_bootstrap_samples = 400;
 constexpr std::uint64_t k_seed = 20260101;
@@ -246,7 +246,7 @@ class Fit {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       squares += std::pow(calibration_.weights[rows_[i]] * calibration_.y.values[rows_[i]], 2);
     }
-    const double share = k_margin_of_rounding * problem_.noise;
+    const double share = k_margin_of_round_off * problem_.noise;
     return cost_of_data(result.solution) <= share * share * squares;
   }
 

@@ -84,7 +84,7 @@ double seconds_of_last_step(const Run& run) {
 /// Time between the ends of two runs, over the step in which the first has ended.
 double ends_apart(const Run& a, const Run& b) {
   const double apart = std::abs(end_time(a) - end_time(b));
-  return apart <= k_stress_rounding * end_time(a) ? 0.0 : apart / seconds_of_last_step(a);
+  return apart <= k_stress_round_off * end_time(a) ? 0.0 : apart / seconds_of_last_step(a);
 }
 
 /// True if a limit ends a run at a corner of the program that another run passes. If the program leads just up to a
@@ -93,7 +93,7 @@ bool stops_at_corner(const Run& run, const Run& other, double tolerance) {
   if (run.record.status == RunStatus::complete) return false;
   const Table& events = other.record.events;
   const auto name = *events.find("event");
-  const double near = tolerance * seconds_of_last_step(run) + k_stress_rounding * end_time(run);
+  const double near = tolerance * seconds_of_last_step(run) + k_stress_round_off * end_time(run);
   for (std::size_t row = 0; row < events.row_count(); ++row) {
     if (events.word(row, name) == "step-end" && std::abs(events.at(row, 0) - end_time(run)) <= near) return true;
   }
@@ -192,7 +192,7 @@ class SceneCheck {
       reference_ = run;
       compares_curves_ = false;
       tolerance_ = own_tolerance(*run);
-      share_ = k_stress_rounding;
+      share_ = k_stress_round_off;
       return check_copies(*run);
     }
     const bool has_ended = run->record.status != RunStatus::complete;
@@ -221,13 +221,13 @@ class SceneCheck {
   /// Sets the tolerances of comparisons with the scene's own run.
   void measure_tolerance() {
     const bool is_direct = own_->integrator.is_direct();
-    share_ = is_direct ? k_stress_rounding : std::max(scenario_.numerics.rtol, k_finest_rtol);
+    share_ = is_direct ? k_stress_round_off : std::max(scenario_.numerics.rtol, k_finest_rtol);
     tolerance_ = std::max(own_tolerance(*own_), own_tolerance(*reference_));
     nothing_ = {.unit = {.length = scenario_.radius, .stress = softest(scenario_)},
-                .share = is_direct ? k_stress_rounding : own_absolute_tolerance(*own_),
+                .share = is_direct ? k_stress_round_off : own_absolute_tolerance(*own_),
                 .energy_share = direct_work_tolerance(*own_),
                 .step_share = tolerance_,
-                .length = k_stress_rounding * scenario_.radius};
+                .length = k_stress_round_off * scenario_.radius};
   }
 
   // --- copies of the scene that must agree with it

@@ -74,7 +74,7 @@ double stiffest_modulus(const Run& run) {
 /// an integrator's absolute tolerance.
 double energy_floor(const Run& run) {
   const double negligible = run.integrator.is_direct() ? 0.0 : own_absolute_tolerance(run) * softest(run.scenario);
-  return std::max(k_stress_rounding * stiffest_modulus(run), negligible) * std::pow(run.scenario.radius, 3);
+  return std::max(k_stress_round_off * stiffest_modulus(run), negligible) * std::pow(run.scenario.radius, 3);
 }
 
 /// Round-off of the force [N] of a contact that unloads: that of its overlap times its unloading stiffness, which does
@@ -82,7 +82,7 @@ double energy_floor(const Run& run) {
 double force_floor(const Run& run, std::size_t row, const std::string& wall) {
   const auto contact_radius = run.record.history.find(wall + ".contact_radius");
   if (!contact_radius) return 0.0;
-  return k_stress_rounding * 2.0 * stiffest_modulus(run) * run.record.history.at(row, *contact_radius) *
+  return k_stress_round_off * 2.0 * stiffest_modulus(run) * run.record.history.at(row, *contact_radius) *
          run.scenario.radius;
 }
 
@@ -206,10 +206,10 @@ void check_program(const Run& run, Violations& found) {
     // The force of a shallow contact is known only as well as its overlap, a difference of such lengths.
     double by_overlap = 0.0;
     if (name->ends_with("force")) {
-      by_overlap = std::max(change_with_overlap(table, last_row, column, k_stress_rounding * run.scenario.radius),
+      by_overlap = std::max(change_with_overlap(table, last_row, column, k_stress_round_off * run.scenario.radius),
                             force_floor(run, last_row, channel.name));
     }
-    if (std::abs(last - target) <= own_tolerance(run) * scale + k_stress_rounding * unit + by_overlap) continue;
+    if (std::abs(last - target) <= own_tolerance(run) * scale + k_stress_round_off * unit + by_overlap) continue;
     found.push_back({"program", fmt::format("{} ends {:.3g} off {:.9g}", *name, last - target, target)});
     return;
   }
@@ -440,7 +440,7 @@ double own_tolerance(const Run& run) {
 }
 
 double own_absolute_tolerance(const Run& run) {
-  if (run.integrator.is_direct()) return k_stress_rounding;
+  if (run.integrator.is_direct()) return k_stress_round_off;
   return own_tolerance(run) / run.scenario.numerics.rtol * run.scenario.numerics.atol;
 }
 
@@ -449,7 +449,7 @@ std::vector<Violation> check_run(const Run& run) {
   const TableRows rows(run.record.history);
   const Scene scene = make_scene(run.scenario);
   const ModelInput input = model_input(run.scenario);
-  const CheckedRun checked{input, rows, scene.classes, own_tolerance(run), k_stress_rounding};
+  const CheckedRun checked{input, rows, scene.classes, own_tolerance(run), k_stress_round_off};
   check_end(run, found);
   check_numbers(run, checked, found);
   check_forces(run, found);
