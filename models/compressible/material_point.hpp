@@ -14,18 +14,14 @@
 ///
 /// Modes. Between the corners of the program the elastic rates of stress are constant, so that the end of an elastic
 /// phase is known in closed form. Plastic loading ends at corners only: the elastic domain is convex, so that N would
-/// grow where the plastic flow came to rest (N = 0), and the other changes of N are proportional to N itself. At an end
-/// of a segment where the flow is isochoric, phi is stationary and the pressure moves as the program prescribes. The
-/// state passes such an end in one direction only, and only if the program moves the pressure in that direction.
-/// Otherwise it tends to the end (critical state) without reaching it.
+/// grow where the plastic flow came to rest (N = 0), and the other changes of N are proportional to N itself.
 ///
 /// Source: Edmans and Sinka (n.d.), sections 2 and 3; Table 3 as corrected.
 #pragma once
 
-#include <array>
 #include <vector>
 
-#include "compressible/yield_surface.hpp"
+#include "compressible/plastic_flow.hpp"
 #include "system/hybrid_system.hpp"
 
 namespace monograin::compressible {
@@ -42,7 +38,7 @@ class MaterialPoint final : public HybridSystem {
 
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override;
   [[nodiscard]] double error_gain() const noexcept override;
-  [[nodiscard]] bool is_solvable() const noexcept override;
+  [[nodiscard]] bool is_solvable() const noexcept override { return phase_.has_straight_flow; }
   [[nodiscard]] bool is_semi_explicit() const noexcept override { return false; }
   void start(std::span<double> y) override;
   void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override;
@@ -68,89 +64,25 @@ class MaterialPoint final : public HybridSystem {
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
 
  private:
-  // Indices of the unknowns.
-  static constexpr std::size_t k_phi = 0;
-  static constexpr std::size_t k_deviatoric = 1;
-  static constexpr std::size_t k_path = 2;
-  // Channels.
-  static constexpr std::size_t k_axial = 0;
-  static constexpr std::size_t k_lateral = 1;
-
-  enum GuardKind { yielding, end_of_segment, apex, domain_end_guard };
-
-  /// Stress and strain at an instant, for given plastic strains.
-  struct Response {
-    Properties at;
-    double p = 0.0;
-    double s = 0.0;
-    double axial_strain = 0.0;
-    double lateral_strain = 0.0;
+  /// End of the present elastic phase.
+  struct ElasticEnd {
+    double xi = 0.0;
+    Branch branch;  ///< on which the material yields
   };
 
-  /// Change of p and s.
-  struct Increment {
-    double p = 0.0;
-    double s = 0.0;
-  };
-
-  /// Direction of the flow, and what determines the plastic multiplier.
-  struct Flow {
-    Yield yield;
-    double phi = 0.0;              ///< d(phi)/dl
-    double deviatoric = 0.0;       ///< d(g^p)/dl
-    double f_by_phi = 0.0;         ///< df/dphi, including the change of stress
-    double f_by_deviatoric = 0.0;  ///< df/d(g^p), by the change of stress
-    double loading = 0.0;          ///< N
-    double stiffness = 0.0;        ///< D
-    double p_by_flow = 0.0;        ///< dp/dl by the flow alone
-    Increment elastic;             ///< rate per xi, without flow
-  };
-
-  [[nodiscard]] double prescribed(std::size_t channel, double xi) const noexcept;
-  [[nodiscard]] double prescribed_rate(std::size_t channel) const noexcept;
-  [[nodiscard]] bool is_stress(std::size_t channel) const noexcept;
-  [[nodiscard]] static double flow_work(const Properties& at, const Yield& yield, double p, double s) noexcept;
-  [[nodiscard]] double stress(std::size_t channel, double xi, const Response& now) const noexcept;
   [[nodiscard]] Response response(double xi, std::span<const double> y) const;
-  [[nodiscard]] Increment stress_change(const Properties& at, Increment stiff, double axial, double lateral) const;
-  [[nodiscard]] static double stiffness_over_strength(const Properties& at) noexcept;
-  [[nodiscard]] Increment elastic_rate(const Properties& at) const;
-  [[nodiscard]] Flow flow(const Response& now) const;
-  [[nodiscard]] Flow flow(const Response& now, const Yield& yield) const;
-  [[nodiscard]] static double cosine(const Flow& flow) noexcept;
-  static void require_unique(const Flow& flow);
-  [[nodiscard]] static double length(const Flow& flow) noexcept;
-  [[nodiscard]] Flow flow_to_surface(const Response& now) const;
-  [[nodiscard]] std::optional<Yield> yield_across_cap(const Response& now) const;
-  enum class ReturnPath { flow, shortest };
-  class ReturnMapping;
-  [[nodiscard]] bool is_brought_back(double xi, std::span<double> y, ReturnPath path) const;
-  [[nodiscard]] bool leads_out(bool towards_compression, const Response& now) const;
-  [[nodiscard]] bool passes_apex(const Response& now) const;
-  [[nodiscard]] double pressure_rate_at_end(const Response& now, bool towards_compression) const;
-  [[nodiscard]] bool is_isochoric_end(Segment segment, bool towards_compression) const noexcept;
-
-  [[nodiscard]] bool goes_on_yielding(const Response& now) const;
-  void turn_plastic(Branch branch, const Response& now);
-  void hold(std::span<const double> y) noexcept;
-  void choose_side(const Response& now);
+  [[nodiscard]] PlasticFlow flow(double xi, std::span<const double> y) const;
+  void turn_plastic(const Response& now);
   void go_on_plastic(const Response& now, std::vector<Event>& log);
   void pass_ends(const Response& now, std::vector<Event>& log);
-  void enter_neighbour(const Response& now, bool towards_compression);
-  void watch_elastic(double xi, const Response& now);
-  void watch_plastic(const Response& now);
-  [[nodiscard]] double margin(Limit limit, const Response& now) const;
-  [[nodiscard]] DomainEnd domain_end(Limit limit, const Response& now) const;
+  void arm_elastic(double xi, const Response& now);
+  void arm_plastic(const Response& now);
 
-  Settings settings_;
+  double yield_pressure_;  ///< [Pa]
   std::vector<Observable> observables_;
-  std::array<Ramp, 2> ramps_{};  ///< stresses in units of the yield pressure
-  double held_phi_ = 0.0;
-  double held_deviatoric_ = 0.0;
-  bool is_plastic_ = false;
-  Branch branch_;      ///< while plastic
-  double exit_ = 0.0;  ///< xi at which the present elastic phase ends
-  Branch exit_branch_;
+  Phase phase_;
+  PlasticStrains at_start_;  ///< plastic strains with which the phase began; solve() starts from them
+  ElasticEnd elastic_end_;
   std::vector<Guard> guards_;
   double least_work_ = 0.0;  ///< least work rate of the flow in observed states
 };

@@ -1,13 +1,12 @@
-// Return mapping: brings a material point's state back to the yield surface.
+#include "compressible/return_mapping.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
 #include <stdexcept>
 
-#include "compressible/material_point.hpp"
+#include "compressible/segment_ends.hpp"
 #include "system/limit.hpp"
 
 namespace monograin::compressible {
@@ -34,43 +33,20 @@ constexpr double k_nearby = 1e-2;
 // runs along the surface, and errors would move a state by their root, or to anywhere.
 constexpr double k_most_detour = 1e3;
 
-}  // namespace
-
-/// Brings the plastic strains to f = 0 along the flow. Where that does not arrive, or runs along the surface, takes the
-/// shortest path, because both strains may carry an integrator's errors. Under prescribed stresses, f does not depend
-/// on g^p, and near a critical state the flow hardly changes phi: there only the shortest path is tried.
-void MaterialPoint::complete(double xi, std::span<double> y) {
-  if (!is_plastic_) return;
-  const double phi = y[k_phi];
-  const double deviatoric = y[k_deviatoric];
-  const bool has_flow_alone = is_solvable();
-  if (has_flow_alone || !is_stress(k_axial) || !is_stress(k_lateral)) {
-    try {
-      if (is_brought_back(xi, y, ReturnPath::flow)) return;
-    } catch (const std::domain_error&) {
-      if (has_flow_alone) throw;
-    }
-    y[k_phi] = phi;
-    y[k_deviatoric] = deviatoric;
-  }
-  if (!has_flow_alone && is_brought_back(xi, y, ReturnPath::shortest)) return;
-  throw DomainError(Limit::loss_of_uniqueness, "no plastic strain brings the stress back to the yield surface");
-}
-
 /// Yield function for a guess on the far side of a cap that the program does not leave: the tangent of f at the guess's
 /// mirror image, which leads to the near side. In strains, a cap of a hardly compressible material is narrow, and a
 /// guess may lie anywhere; f itself would lead to the ellipse's continuation beyond the segment's end. None for other
 /// guesses.
-std::optional<Yield> MaterialPoint::yield_across_cap(const Response& now) const {
-  const Segment segment = branch_.segment;
+std::optional<Yield> yield_across_cap(const Phase& phase, const Response& now) {
+  const Segment segment = phase.branch.segment;
   if (segment != Segment::cap && segment != Segment::tension) return std::nullopt;
-  if (is_stress(k_axial) && is_stress(k_lateral)) return std::nullopt;
+  if (phase.conditions.are_stresses()) return std::nullopt;
   const bool ends_in_compression = segment == Segment::tension;
-  const double distance = *distance_to_end(settings_.parameters, now.at, segment, ends_in_compression, now.p);
+  const double distance = *distance_to_end(phase.parameters, now.at, segment, ends_in_compression, now.p);
   const double outwards = ends_in_compression ? -1.0 : 1.0;
-  if (distance >= 0.0 || outwards * pressure_rate_at_end(now, ends_in_compression) > 0.0) return std::nullopt;
+  if (distance >= 0.0 || outwards * pressure_rate_at_end(phase, now, ends_in_compression) > 0.0) return std::nullopt;
   const double to_image = 2.0 * outwards * distance;
-  Yield yield = yield_on(settings_.parameters, now.at, branch_, now.p + to_image, now.s);
+  Yield yield = yield_on(phase.parameters, now.at, phase.branch, now.p + to_image, now.s);
   // Next to the end, f continues smoothly for states that are there by an error.
   if (std::abs(distance * yield.f_p) <= std::abs(now.s * yield.f_s)) return std::nullopt;
   yield.f -= yield.f_p * to_image;
@@ -80,36 +56,38 @@ std::optional<Yield> MaterialPoint::yield_across_cap(const Response& now) const 
 /// Flow and yield function that lead back to f = 0. The shear segment of vm and vmdc is a pair of lines, c^2 = 1 with c
 /// = s over the strength, and a guess that is off by more than the elastic strain lies beside the other line. The
 /// distance c - 1 from the line of this side, with its own slopes, leads to the right line from anywhere.
-MaterialPoint::Flow MaterialPoint::flow_to_surface(const Response& now) const {
-  if (const auto across = yield_across_cap(now)) return flow(now, *across);
-  Flow flow_now = flow(now);
-  const bool is_line = settings_.parameters.model != YieldModel::dpc && branch_.segment == Segment::shear;
-  if (!is_line || branch_.side == 0.0) return flow_now;
-  const double c = branch_.side * now.s / now.at.shear_strength.value;
-  flow_now.yield.f = c - 1.0;
-  for (double* slope : {&flow_now.f_by_phi, &flow_now.f_by_deviatoric, &flow_now.deviatoric}) *slope /= 2.0 * c;
-  flow_now.phi /= 2.0 * std::abs(c);
-  return flow_now;
+PlasticFlow flow_to_surface(const Phase& phase, const Response& now) {
+  if (const auto across = yield_across_cap(phase, now)) return plastic_flow(phase, now, *across);
+  PlasticFlow flow = plastic_flow(phase, now);
+  const bool is_line = phase.parameters.model != YieldModel::dpc && phase.branch.segment == Segment::shear;
+  const double side = phase.branch.side;
+  if (!is_line || side == 0.0) return flow;
+  const double c = side * now.s / now.at.shear_strength.value;
+  flow.yield.f = c - 1.0;
+  for (double* slope : {&flow.gradient.phi, &flow.gradient.deviatoric, &flow.direction.deviatoric}) *slope /= 2.0 * c;
+  flow.direction.phi /= 2.0 * std::abs(c);
+  return flow;
 }
+
+enum class ReturnPath { flow, shortest };
 
 /// Newton's method on f = 0 in one direction, along the flow or along the gradient of f.
 ///
 /// A cap much narrower in one direction is a valley of f. A correction that passes the valley's floor without coming
 /// inside returns to the floor, and goes on along it, where the slope across stays zero. Corrections from slope to
 /// slope would be many.
-class MaterialPoint::ReturnMapping {
+class ReturnMapping {
  public:
-  /// @param y  in: the guess; out: the corrected state
-  ReturnMapping(const MaterialPoint& point, double xi, std::span<double> y, ReturnPath path)
-      : point_(point),
+  ReturnMapping(const Phase& phase, double xi, const PlasticStrains& guess, ReturnPath path)
+      : phase_(phase),
         xi_(xi),
-        y_(y),
         is_along_flow_(path == ReturnPath::flow),
-        has_caps_(is_compressible(point.settings_.parameters.model)),
-        guess_{y[k_phi], y[k_deviatoric]} {}
+        has_caps_(is_compressible(phase.parameters.model)),
+        guess_(guess),
+        strains_(guess) {}
 
-  /// @return true if the method reaches f = 0, not too far from the guess
-  [[nodiscard]] bool succeeds() {
+  /// Plastic strains with f = 0, not too far from the guess; none if the method does not reach them.
+  [[nodiscard]] std::optional<PlasticStrains> result() {
     try {
       for (int i = 0; i < k_most_corrections; ++i) {
         if (!evaluate()) continue;
@@ -118,32 +96,25 @@ class MaterialPoint::ReturnMapping {
           go_back_to_floor();
           continue;
         }
-        if (!correct()) return false;
-        if (has_converged()) return is_near_guess();
+        if (!correct()) return std::nullopt;
+        if (!has_converged()) continue;
+        return is_near_guess() ? std::optional(strains_) : std::nullopt;
       }
     } catch (const std::domain_error&) {
       // A far correction that leads to where the law has no surface is a failure, too.
-      if (std::abs(y_[k_phi] - guess_.phi) <= elastic_strain_) throw;
+      if (std::abs(strains_.phi - guess_.phi) <= elastic_strain_) throw;
     }
-    return false;
+    return std::nullopt;
   }
 
  private:
-  /// Plastic strains, or a direction or a step in them.
-  struct Strains {
-    double phi = 0.0;
-    double deviatoric = 0.0;
-
-    [[nodiscard]] double length() const { return std::hypot(phi, deviatoric); }
-  };
-
-  void move(const Strains& step, double share) {
-    y_[k_phi] += share * step.phi;
-    y_[k_deviatoric] += share * step.deviatoric;
+  void move(const PlasticStrains& step, double share) {
+    strains_.phi += share * step.phi;
+    strains_.deviatoric += share * step.deviatoric;
   }
 
-  [[nodiscard]] double slope_along(const Strains& step) const {
-    return now_.f_by_phi * step.phi + now_.f_by_deviatoric * step.deviatoric;
+  [[nodiscard]] double slope_along(const PlasticStrains& step) const {
+    return now_.gradient.phi * step.phi + now_.gradient.deviatoric * step.deviatoric;
   }
 
   /// Evaluates stresses and flow. Next to where moduli become infinite, a correction may leave the domain; half of it,
@@ -151,8 +122,8 @@ class MaterialPoint::ReturnMapping {
   /// @return false if half of the last correction was taken back instead
   [[nodiscard]] bool evaluate() {
     try {
-      here_ = point_.response(xi_, y_);
-      now_ = point_.flow_to_surface(here_);
+      here_ = response(phase_, xi_, strains_);
+      now_ = flow_to_surface(phase_, here_);
     } catch (const std::domain_error&) {
       if (correction_.phi == 0.0 || ++halvings_ > k_most_halvings) throw;
       for (double* part : {&correction_.phi, &correction_.deviatoric, &last_.yield.f}) *part *= 0.5;
@@ -166,7 +137,7 @@ class MaterialPoint::ReturnMapping {
   /// Measures how far from the guess the method may lead.
   void measure_guess() {
     elastic_strain_of_guess_ = elastic_strain_;
-    shortest_ = std::abs(now_.yield.f) / std::hypot(now_.f_by_phi, now_.f_by_deviatoric);
+    shortest_ = std::abs(now_.yield.f) / now_.gradient.length();
   }
 
   [[nodiscard]] bool has_passed_floor() const {
@@ -177,21 +148,20 @@ class MaterialPoint::ReturnMapping {
   void go_back_to_floor() {
     const double slope = slope_along(correction_);
     move(correction_, -(slope / (last_.yield.f + slope)));
-    floor_ = {last_.f_by_deviatoric - now_.f_by_deviatoric, now_.f_by_phi - last_.f_by_phi};
+    floor_ = {last_.gradient.deviatoric - now_.gradient.deviatoric, now_.gradient.phi - last_.gradient.phi};
     correction_ = {};
     last_ = {};
   }
 
-  [[nodiscard]] Strains direction() const {
+  [[nodiscard]] PlasticStrains direction() const {
     if (floor_) return *floor_;
-    if (is_along_flow_) return {now_.phi, now_.deviatoric};
-    return {now_.f_by_phi, now_.f_by_deviatoric};
+    return is_along_flow_ ? now_.direction : now_.gradient;
   }
 
   /// @return false if f does not change in the direction
   [[nodiscard]] bool correct() {
     last_ = now_;
-    const Strains along = direction();
+    const PlasticStrains along = direction();
     const double step = -now_.yield.f / slope_along(along);
     correction_ = {step * along.phi, step * along.deviatoric};
     if (!std::isfinite(step)) return false;
@@ -216,33 +186,45 @@ class MaterialPoint::ReturnMapping {
   }
 
   [[nodiscard]] bool is_near_guess() const {
-    if (point_.is_solvable()) return true;
-    const double distance = std::hypot(y_[k_phi] - guess_.phi, y_[k_deviatoric] - guess_.deviatoric);
+    if (phase_.has_straight_flow) return true;
+    const double distance = std::hypot(strains_.phi - guess_.phi, strains_.deviatoric - guess_.deviatoric);
     if (is_along_flow_ && distance > std::max(k_last_correction, k_most_detour * shortest_)) return false;
     return distance <= std::max(elastic_strain_of_guess_, k_nearby);
   }
 
-  const MaterialPoint& point_;
+  const Phase& phase_;
   double xi_;
-  std::span<double> y_;
   bool is_along_flow_;
   bool has_caps_;
-  Strains guess_;
+  PlasticStrains guess_;
+  PlasticStrains strains_;
   double elastic_strain_ = 0.0;
   double elastic_strain_of_guess_ = 0.0;
   double shortest_ = 0.0;  ///< distance of the guess from f = 0, to first order
   Response here_;
-  Flow now_;
-  Strains correction_;            ///< the last one
-  Flow last_;                     ///< flow where the last correction began; f is the part that it takes away
-  std::optional<Strains> floor_;  ///< direction along the floor of a valley
+  PlasticFlow now_;
+  PlasticStrains correction_;            ///< the last one
+  PlasticFlow last_;                     ///< flow where the last correction began; f is the part that it takes away
+  std::optional<PlasticStrains> floor_;  ///< direction along the floor of a valley
   int small_corrections_ = 0;
   int corrections_of_rounding_ = 0;
   int halvings_ = 0;
 };
 
-bool MaterialPoint::is_brought_back(double xi, std::span<double> y, ReturnPath path) const {
-  return ReturnMapping(*this, xi, y, path).succeeds();
+}  // namespace
+
+PlasticStrains returned_to_surface(const Phase& phase, double xi, const PlasticStrains& guess) {
+  if (phase.has_straight_flow || !phase.conditions.are_stresses()) {
+    try {
+      if (const auto found = ReturnMapping(phase, xi, guess, ReturnPath::flow).result()) return *found;
+    } catch (const std::domain_error&) {
+      if (phase.has_straight_flow) throw;
+    }
+  }
+  if (!phase.has_straight_flow) {
+    if (const auto found = ReturnMapping(phase, xi, guess, ReturnPath::shortest).result()) return *found;
+  }
+  throw DomainError(Limit::loss_of_uniqueness, "no plastic strain brings the stress back to the yield surface");
 }
 
 }  // namespace monograin::compressible
