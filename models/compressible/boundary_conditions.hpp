@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -33,11 +32,9 @@ class BoundaryConditions {
   [[nodiscard]] bool are_stresses() const noexcept { return is_stress(Channel::axial) && is_stress(Channel::lateral); }
   [[nodiscard]] bool are_strains() const noexcept { return !is_stress(Channel::axial) && !is_stress(Channel::lateral); }
   /// Prescribed strain, or stress in yield pressures.
-  [[nodiscard]] double value(Channel channel, double xi) const noexcept {
-    return std::lerp(ramp(channel).start, ramp(channel).end, xi);
-  }
+  [[nodiscard]] double value(Channel channel, double xi) const noexcept { return ramp(channel).value(xi); }
   /// Rate of the prescribed value per step of the program.
-  [[nodiscard]] double rate(Channel channel) const noexcept { return ramp(channel).end - ramp(channel).start; }
+  [[nodiscard]] double rate(Channel channel) const noexcept { return ramp(channel).rate(); }
 
  private:
   [[nodiscard]] const Ramp& ramp(Channel channel) const noexcept { return ramps_[static_cast<std::size_t>(channel)]; }

@@ -14,16 +14,14 @@
 ///
 /// If a prescribed strain or stress exceeds what the packing can reach, or a packing fraction leaves the domain of the
 /// equations, the run ends a little before, where the rates are still finite.
-///
-/// All events lie at known packing fractions, and therefore at known values of the controlled quantity.
 #pragma once
 
 #include <array>
 #include <optional>
 #include <vector>
 
-#include "packing/law.hpp"
-#include "system/hybrid_system.hpp"
+#include "packing/equations.hpp"
+#include "packing/events.hpp"
 
 namespace monograin::packing {
 
@@ -49,8 +47,10 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<double> closed_quadrature(double /*xi*/, std::span<const double> /*y*/) override {
     return std::nullopt;
   }
-  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
-  void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_.list(); }
+  void guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) override {
+    guards_.distances(ramp_, xi, values);
+  }
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                 std::vector<Event>& log) override;
   [[nodiscard]] std::span<const Observable> observables() const noexcept override { return observables_; }
@@ -61,76 +61,29 @@ class System final : public HybridSystem {
   [[nodiscard]] std::vector<Diagnostic> warnings() const override { return {}; }
 
  private:
-  enum class Mode {
-    unjammed,
-    held,      ///< at jamming, under less stress than its branch begins with
-    starting,  ///< next to the singular point: closed form
-    jammed     ///< integrated where there is an integrator
-  };
-
-  /// Observed state at an instant.
-  struct Seen {
-    double packing_fraction = 0.0;
-    double stress_elastic = 0.0;  ///< [Pa]
-    double strain = 0.0;
-    double stress = 0.0;  ///< [Pa]
-  };
-
-  [[nodiscard]] double prescribed(double xi) const noexcept;
-  [[nodiscard]] int direction() const noexcept;
-  [[nodiscard]] Seen by_law(double xi) const;
-  [[nodiscard]] Seen seen(double xi, std::span<const double> y) const;
-  [[nodiscard]] double prescribed_at(double packing_fraction) const;
-  [[nodiscard]] double prescribed_at_jamming() const noexcept;
-  [[nodiscard]] double strain_of(std::span<const double> y) const noexcept;
-  [[nodiscard]] double excess(double xi, std::span<const double> y) const;
-  [[nodiscard]] std::array<double, 2> excess_slopes(std::span<const double> y) const;
-  [[nodiscard]] double least_fraction() const noexcept;
-  [[nodiscard]] std::array<double, 2> within_branch(std::span<const double> y) const noexcept;
-  [[nodiscard]] bool is_brought_back(double xi, std::span<double> y) const;
-  [[nodiscard]] Regime regime() const noexcept;
-
-  void take_piece(double xi);
-  void take_branch();
-  [[nodiscard]] double last_place() const noexcept;
-  [[nodiscard]] double growth_of(const Slopes& slopes) const noexcept;
-  [[nodiscard]] double growth_by_law(double packing_fraction) const;
-  [[nodiscard]] bool has_passed_end(double packing_fraction, double growth) const;
+  [[nodiscard]] bool is_jammed() const noexcept { return mode_ != Mode::unjammed; }
+  [[nodiscard]] PackingState by_law(double xi) const;
+  [[nodiscard]] PackingState seen(double xi, std::span<const double> y) const;
+  [[nodiscard]] Equations equations(double xi) const;
   [[nodiscard]] bool is_at_limit(double xi) const noexcept;
-  [[nodiscard]] DomainEnd limit() const;
-  void require_state(double xi) const;
-  void resolve_mode(double xi, std::vector<Event>& log);
-  [[nodiscard]] Mode mode_of_jammed(double value) const;
+  [[nodiscard]] Regime regime() const noexcept;
+  void require_pores(std::span<const double> y) const;
+  void resolve_mode(std::vector<Event>& log);
   void set_mode(Mode mode, double xi, std::span<double> y);
-  void arm_place(int kind, std::string_view name, double place);
-  void arm_guards(double xi);
-  void arm_jamming();
-  void arm_loosening();
-  void arm_compaction(double xi);
-  void pass_places(double xi, std::vector<Event>& log);
-  void end_branch_at_jamming() noexcept;
+  void take_piece(double xi);
 
-  Law law_;
   double initial_ = 0.0;
-  State at_jamming_;
-  double softening_ = 0.0;  ///< Phi above which the plastic packing is softer than the elastic one; infinite: never
   std::array<Unknown, 2> unknowns_;
   std::vector<Observable> observables_;
 
   Ramp ramp_;
-  Branch branch_;               ///< growing branch of the controlled quantity
-  double growth_at_end_ = 0.0;  ///< derivative of the controlled quantity by Phi at the end of a branch that ends at a
-                                ///< fold; else 0
-  double start_end_ = 0.0;      ///< Phi up to which the closed form is used at the start
+  ControlledBranch branch_;
   Mode mode_ = Mode::unjammed;
   double resting_ = 0.0;  ///< value of the unknown Phi in modes that do not integrate it
   double at_rest_ = 0.0;  ///< Phi of an unjammed packing under no stress
-  bool is_jammed_ = false;
-  bool is_softer_ = false;
-  bool is_fully_plastic_ = false;
+  Yielding yielding_;
   Piece piece_ = Piece::growing;  ///< piece of eq. 11 that an integrated state follows
-  std::vector<Guard> guards_;
-  std::vector<double> places_;  ///< positions of the guards, as values of the controlled quantity
+  Guards guards_;
 };
 
 }  // namespace monograin::packing

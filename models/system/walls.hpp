@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,12 @@ struct Ramp {
   double start = 0.0;
   double end = 0.0;
   Control control = Control::displacement;
+
+  [[nodiscard]] double value(double xi) const noexcept { return std::lerp(start, end, xi); }
+  /// Rate of the value per step of the program.
+  [[nodiscard]] double rate() const noexcept { return end - start; }
+  /// 1 if the value grows, -1 if it falls, else 0.
+  [[nodiscard]] int direction() const noexcept { return (end > start) - (end < start); }
 };
 
 }  // namespace monograin

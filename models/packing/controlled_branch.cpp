@@ -1,0 +1,102 @@
+#include "packing/controlled_branch.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace monograin::packing {
+namespace {
+
+// Extent of the closed start, over Phi, and over the first half of the controlled quantity's range. It is larger for a
+// branch that begins at a minimum of that quantity, where Phi goes like the root of an error.
+constexpr double k_start = 1e-6;
+constexpr double k_start_of_fold = 1e-3;
+constexpr double k_last_share = 1e-6;  // share of a branch's range by which a run ends before the branch does
+// Distance of Phi from a pole at which every branch ends: nearer to the pole, strains and rates are round-off.
+constexpr double k_margin_of_pole = 1e-7;
+
+Branch range_of(const Law& law, Control control) {
+  const double last = law.end < 1.0 ? std::max(law.jamming, law.end - k_margin_of_pole) : 1.0;
+  if (control == Control::packing_fraction) {
+    return {.measure = Measure::strain, .begin = law.jamming, .end = last, .least = law.jamming, .greatest = last};
+  }
+  Branch branch = growing_branch(law, control == Control::strain ? Measure::strain : Measure::stress);
+  if (branch.end > last) {
+    branch.end = std::max(branch.begin, last);
+    branch.greatest = measured(law, branch.measure, branch.end);
+  }
+  return branch;
+}
+
+}  // namespace
+
+ControlledBranch::ControlledBranch(const Law& law, Control control)
+    : law_(law),
+      control_(control),
+      range_(range_of(law, control)),
+      strain_at_jamming_(state(law, law.jamming).strain),
+      end_of_start_(std::min(std::max(law.jamming, range_.begin) * (1.0 + k_start), range_.end)) {
+  if (control == Control::packing_fraction) return;
+  const double middle = std::midpoint(range_.begin, range_.end);
+  if (is_limited()) {
+    const double at_end = growth_by_law(packing_fraction_at(last_value()));
+    // Otherwise the branch ends at a pole, next to which an integrator's tolerated error gives the growth any value.
+    const bool is_fold = at_end < growth_by_law(middle);
+    if (is_fold) growth_at_fold_ = at_end;
+  }
+  const double share = range_.begin > law_.jamming ? k_start_of_fold : k_start;
+  const double end = std::clamp(std::lerp(range_.least, value_at(middle), share), range_.least, range_.greatest);
+  end_of_start_ = std::max(end_of_start_, packing_fraction_at(end));
+}
+
+double ControlledBranch::least_integrated() const noexcept { return law_.jamming * (1.0 + 0.5 * k_start); }
+
+double ControlledBranch::value_at(double packing_fraction) const {
+  if (control_ == Control::packing_fraction) return packing_fraction;
+  return measured(law_, range_.measure, packing_fraction);
+}
+
+double ControlledBranch::value_at_jamming() const noexcept {
+  return control_ == Control::strain ? strain_at_jamming_ : law_.jamming;
+}
+
+double ControlledBranch::last_value() const noexcept {
+  return range_.greatest - k_last_share * (range_.greatest - range_.least);
+}
+
+double ControlledBranch::packing_fraction_at(double value) const {
+  if (control_ == Control::packing_fraction) return value;
+  return packing::packing_fraction_at(law_, range_, value);
+}
+
+double ControlledBranch::growth(const Slopes& slopes) const noexcept {
+  if (control_ == Control::packing_fraction) return 1.0;
+  return control_ == Control::strain ? slopes.strain : slopes.stress;
+}
+
+double ControlledBranch::growth_by_law(double packing_fraction) const {
+  return growth(slopes(law_, packing_fraction, state(law_, packing_fraction).strain));
+}
+
+bool ControlledBranch::has_passed_end(double packing_fraction, double growth) const {
+  constexpr double k_doubt = 0.5;
+  return growth < k_doubt * growth_at_fold_ &&
+         (packing_fraction >= range_.end || growth < k_doubt * growth_by_law(packing_fraction));
+}
+
+Limit ControlledBranch::limit() const noexcept {
+  if (control_ == Control::strain) return Limit::greatest_strain;
+  return control_ == Control::stress ? Limit::greatest_stress : Limit::infinite_stress;
+}
+
+DomainEnd ControlledBranch::domain_end() const { return {{"limit"}, {limit(), -1, "greatest value", range_.greatest}}; }
+
+void ControlledBranch::require_state(double value) const {
+  if (is_limited() && value > range_.greatest) throw DomainError(limit());
+}
+
+void ControlledBranch::end_at_jamming() noexcept {
+  range_.begin = range_.end = law_.jamming;
+  range_.least = range_.greatest = value_at_jamming();
+}
+
+}  // namespace monograin::packing
