@@ -1,6 +1,7 @@
 #include "mdr/contact_caps.hpp"
 
 #include "mdr/guards.hpp"
+#include "mdr/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -11,7 +12,7 @@ constexpr double k_parted = 1e-6;
 /// Overlap of a contact's cap. An idle contact has none; a round-off overlap of 1e-12 R0 would give one 1e-6 R0 wide.
 double cap_overlap(const Particle& p, int contact_class) {
   const auto i = static_cast<std::size_t>(contact_class);
-  return p.is_idle(i) ? 0.0 : p.contact(i).overlap;
+  return is_idle(p, i) ? 0.0 : p.contact(i).overlap;
 }
 
 }  // namespace

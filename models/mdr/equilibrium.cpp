@@ -18,12 +18,33 @@ constexpr double k_last_step = 1e-10;
 // A step below this that is not much shorter than the last one is round-off: the search has converged.
 constexpr double k_least_step = 1e-12;
 
+bool peels_anywhere(const Particle& p) noexcept {
+  return std::ranges::any_of(p.branches(), [](const ContactBranch& branch) { return branch.edge.peels(); });
+}
+
 }  // namespace
 
+void move_walls(const Particle& p, double xi, std::span<double> y) {
+  if (!p.setup().takes_forces) return;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!p.is_loaded(i)) continue;
+    double& wall = y[p.setup().wall_index[i]];
+    wall = p.branch(i).displacement_under(p.law(), y[k_radius], p.drive(i).value(xi), wall);
+  }
+}
+
+void record_walls(const Particle& p, double xi, std::span<double> y) noexcept {
+  if (!p.setup().takes_forces) return;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.setup().classes[i].takes_force && !p.is_loaded(i))
+      y[p.setup().wall_index[i]] = p.walls().position(i, xi) + p.centre().moved_towards(i, y.subspan(k_centre));
+  }
+}
+
 void move_centre_and_walls(Particle& p, double xi, std::span<double> y) {
-  p.move_walls(xi, y);
+  move_walls(p, xi, y);
   if (p.centre().is_free()) move_centre(p, xi, y);
-  p.record_walls(xi, y);
+  record_walls(p, xi, y);
 }
 
 void complete(Particle& p, double xi, std::span<double> y) {
@@ -38,7 +59,7 @@ void complete(Particle& p, double xi, std::span<double> y) {
   }
   if (!may_peel_off(p)) return;
   if (is_balanced) leave_saddle(p, xi, y, is_balanced);
-  p.record_walls(xi, y);
+  record_walls(p, xi, y);
 }
 
 void grow(Particle& p, double xi, std::span<double> y) {
@@ -49,9 +70,9 @@ void grow(Particle& p, double xi, std::span<double> y) {
   // Quadratic convergence makes the next step round-off below this. Convergence is slower where forces go with a square
   // root: for a contact that only touches a free centre, or an edge next to pull-off.
   const double last_step =
-      !p.centre().is_free() && !p.peels_anywhere() ? k_last_step : 2.0 * std::numeric_limits<double>::epsilon();
+      !p.centre().is_free() && !peels_anywhere(p) ? k_last_step : 2.0 * std::numeric_limits<double>::epsilon();
   for (int iteration = 0; iteration < k_most_steps; ++iteration) {
-    p.move_walls(xi, y);
+    move_walls(p, xi, y);
     p.evaluate(xi, y);
     double slope = p.at().volume.by_radius;
     double defect = p.at().volume.value - p.mode.frozen_balance;

@@ -5,6 +5,10 @@
 
 namespace monograin::mdr {
 
+/// Moves the force-controlled walls in y to their displacements under the prescribed forces, at the radius in y.
+void move_walls(const Particle& p, double xi, std::span<double> y);
+/// Writes the unknowns of walls whose force is prescribed in other steps only.
+void record_walls(const Particle& p, double xi, std::span<double> y) noexcept;
 /// Moves the free centre and the force-controlled walls in y to equilibrium at the radius that y has.
 /// @throws std::domain_error where no balance is found
 void move_centre_and_walls(Particle& p, double xi, std::span<double> y);

@@ -42,6 +42,13 @@ class FreeCentre {
   [[nodiscard]] bool is_free() const noexcept { return count() > 0; }
   /// Mean normal of a class along the free directions.
   [[nodiscard]] const CentreVector& direction(std::size_t i) const noexcept { return lines_.arm(i); }
+  /// By how much the centre has moved towards the walls of a class.
+  /// @param position  of the centre along the free directions, and whatever follows
+  [[nodiscard]] double moved_towards(std::size_t i, std::span<const double> position) const noexcept {
+    double distance = 0.0;
+    for (int k = 0; k < count(); ++k) distance += direction(i)[k] * position[static_cast<std::size_t>(k)];
+    return distance;
+  }
   /// True if a contact of the class acts on the centre.
   [[nodiscard]] bool acts(std::size_t i) const noexcept { return is_free() && lines_.acts(i); }
   /// A vector along the free directions, in space.

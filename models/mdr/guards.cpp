@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "mdr/centre_search.hpp"
+#include "mdr/rates.hpp"
+#include "mdr/resolution.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
@@ -43,11 +45,11 @@ double contact_guard(const Particle& p, int kind, std::size_t i, double xi, doub
   switch (kind) {
     case k_yield:
       // The round-off of other forces may press an idle contact to its yield overlap.
-      return branch.yield_guard(p.law(), r, overlap, p.is_idle(i) ? p.resolution() : 0.0);
+      return branch.yield_guard(p.law(), r, overlap, is_idle(p, i) ? resolution(p) : 0.0);
     case k_reload:
       return overlap - branch.largest_overlap(p.law(), r) - k_same_overlap;
     case k_lost:
-      return branch.opening_guard(p.law(), r, p.is_idle(i) ? overlap + p.resolution() : overlap);
+      return branch.opening_guard(p.law(), r, is_idle(p, i) ? overlap + resolution(p) : overlap);
     case k_dent_touched:
       return branch.opening_guard(p.law(), r, overlap);
     default:
@@ -249,14 +251,14 @@ double tension_guard(const Particle& p, int kind, std::size_t i, const Motion& n
 double retreat_guard(Particle& p, std::size_t i, double xi, std::span<const double> y, const Motion& now) {
   if (p.mode.loads_on[i]) return rate_if_unloaded(p, i, xi, y);
   // The rate of an idle contact next to a moving centre is round-off, of either sign.
-  return p.is_idle(i) ? 1.0 : primary_branch_rate(p, i, now) + 2.0 * k_zero_guard;
+  return is_idle(p, i) ? 1.0 : primary_branch_rate(p, i, now) + 2.0 * k_zero_guard;
 }
 
 double lost_guard(const Particle& p, std::size_t i, double xi) {
   const double guard = contact_guard(p, k_lost, i, xi, p.contact(i).overlap);
   // An idle contact is always near to being lost. In units of the resolution, its guard is not near zero, so that it is
   // not lost together with others.
-  return p.branch(i).is_on_primary_branch || p.is_idle(i) ? guard / k_resolution : guard;
+  return p.branch(i).is_on_primary_branch || is_idle(p, i) ? guard / k_resolution : guard;
 }
 
 double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, double xi, std::span<const double> y,

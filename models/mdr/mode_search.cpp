@@ -8,6 +8,8 @@
 #include "mdr/centre_search.hpp"
 #include "mdr/equilibrium.hpp"
 #include "mdr/guards.hpp"
+#include "mdr/rates.hpp"
+#include "mdr/resolution.hpp"
 #include "mdr/support.hpp"
 #include "system/limit.hpp"
 #include "system/resolution.hpp"
@@ -148,7 +150,7 @@ bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
       return !branch.touches();
     case k_retreat:
     case k_yield:
-      return p_.is_idle(i);  // carries no load that could fall or yield
+      return is_idle(p_, i);  // carries no load that could fall or yield
     case k_peel:
     case k_turn:
       return has_another_edge();
@@ -327,7 +329,7 @@ bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log
   for (const std::size_t i : just_loaded) balance_touch(p_, i, true, made_);
   // If a contact has pulled off, the others find a new balance.
   if (!has_jumped_ && p_.law().adheres()) balance_anew(xi, y, log);
-  if (!has_jumped_ && !p_.law().adheres()) p_.move_walls(xi, y);
+  if (!has_jumped_ && !p_.law().adheres()) move_walls(p_, xi, y);
   // A contact that has just been made carries no force yet and leaves the growth guard's decision standing.
   if (log.size() > events_before) growth_.reset();
   return true;
@@ -370,10 +372,10 @@ bool ModeSearch::wants_growth(double xi, std::span<double> y) {
   }
   if (is_singular || std::abs(drive) <= k_zero_guard) {
     // The demand is zero to within round-off, or undefined: its sign just after this instant decides.
-    p_.move_walls(xi + k_ahead, y);
+    move_walls(p_, xi + k_ahead, y);
     p_.evaluate(xi + k_ahead, y);
     drive = growth_drive(p_, p_.motion(false));
-    p_.move_walls(xi, y);
+    move_walls(p_, xi, y);
     p_.evaluate(xi, y);
   }
   return drive > 0.0;
@@ -493,7 +495,7 @@ bool ModeSearch::resolve_contact(std::size_t i, double xi, std::span<double> y, 
       return true;
     case Regime::elastic:
       if (resolve_elastic(i, xi, tends, log)) return true;
-      if (p_.is_idle(i)) return false;
+      if (is_idle(p_, i)) return false;
       break;
     case Regime::fully_plastic:
       if (!tends.retreats) return false;
@@ -509,16 +511,16 @@ bool ModeSearch::resolve_elastic(std::size_t i, double xi, const Tendency& tends
   const ContactBranch& branch = p_.branch(i);
   const double overlap = p_.contact(i).overlap;
   const bool retreats = branch.is_on_primary_branch && tends.retreats;
-  const bool is_idle = p_.is_idle(i);
-  const bool is_past_opening = is_idle && tends.opens && contact_guard(p_, k_lost, i, xi, overlap) <= k_zero_guard;
+  const bool idle = is_idle(p_, i);
+  const bool is_past_opening = idle && tends.opens && contact_guard(p_, k_lost, i, xi, overlap) <= k_zero_guard;
   // A prescribed force that begins to pull before the contact has carried any load finds no edge that could stick.
-  const bool is_unborne = !is_idle && retreats && p_.is_loaded(i) && !tends.is_pressed && overlap < k_resolution;
+  const bool is_unborne = !idle && retreats && p_.is_loaded(i) && !tends.is_pressed && overlap < k_resolution;
   if (is_past_opening || is_unborne) {
     p_.lose(i);
     log.push_back(event_of("contact-lost", i));
     return true;
   }
-  if (is_idle) return false;
+  if (idle) return false;
   if (retreats) {
     start_unloading(i, xi == 0.0 ? "load-reversal" : "retreat", log);
     return true;

@@ -5,8 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "elastic/hertz.hpp"
-#include "mdr/guards.hpp"
 #include "mdr/support.hpp"
 #include "system/limit.hpp"
 #include "system/resolution.hpp"
@@ -20,9 +18,8 @@ constexpr double k_at_pull_off = 1e-9;
 
 }  // namespace
 
-Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)) {
+Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)), walls_(setup_->classes.size()) {
   const std::size_t count = setup_->classes.size();
-  walls_.resize(count);
   branches_.resize(count);
   at_.contacts.resize(count);
   at_.centre = setup_->centre;
@@ -34,7 +31,7 @@ void Particle::start() {
   mode.is_growing = false;
   mode.held_radius = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
-    walls_[i].bears = true;
+    walls_.set_bears(i, true);
     branches_[i] = {};
     branches_[i].resting = -setup_->classes[i].gap / setup_->length_unit();
   }
@@ -42,25 +39,8 @@ void Particle::start() {
 }
 
 void Particle::set_drives(std::span<const Ramp> ramps) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const bool is_force = ramps[i].control == Control::force;
-    walls_[i].drive = {ramps[i], is_force ? setup_->force_unit() : setup_->length_unit()};
-    if (is_force) largest = std::max(largest, count(i) * walls_[i].drive.size());
-  }
-  for (std::size_t i = 0; i < size(); ++i) {
-    const double force = is_loaded(i) ? count(i) * walls_[i].drive.size() : 0.0;
-    walls_[i].may_be_slight = centre().acts(i) && force > 0.0 && force <= k_no_force * largest;
-  }
+  walls_.set_drives(*setup_, ramps);
   note_change();
-}
-
-double Particle::speed_scale() const noexcept {
-  double scale = 0.0;
-  for (const Wall& wall : walls_) {
-    if (!wall.drive.is_force_controlled()) scale = std::max(scale, std::abs(wall.drive.rate()));
-  }
-  return scale > 0.0 ? scale : 1.0;
 }
 
 void Particle::set_branch(std::size_t i, const ContactBranch& branch) {
@@ -73,13 +53,9 @@ void Particle::set_branches(const std::vector<ContactBranch>& branches) {
   note_change();
 }
 
-bool Particle::peels_anywhere() const noexcept {
-  return std::ranges::any_of(branches_, [](const ContactBranch& branch) { return branch.edge.peels(); });
-}
-
 void Particle::set_bears(std::size_t i, bool bears) {
-  if (walls_[i].bears == bears) return;
-  walls_[i].bears = bears;
+  if (walls_.bears(i) == bears) return;
+  walls_.set_bears(i, bears);
   note_change();
 }
 
@@ -95,8 +71,8 @@ const Evaluation& Particle::evaluate_forces(double xi, std::span<const double> y
   at_.longest = 1.0;
   for (int k = 0; k < centre().count(); ++k) at_.longest = std::max(at_.longest, std::abs(y[centre_index(k)]));
   for (std::size_t i = 0; i < size(); ++i) {
-    const double carried = carried_by_centre(i, y);
-    const double wall = is_loaded(i) ? y[setup_->wall_index[i]] : prescribed_position(i, xi);
+    const double carried = centre().moved_towards(i, y.subspan(k_centre));
+    const double wall = is_loaded(i) ? y[setup_->wall_index[i]] : walls_.position(i, xi);
     at_.contacts[i].position = is_loaded(i) ? wall - carried : wall;
     evaluate_contact(i, is_loaded(i) ? wall : wall + carried, at_.r);
   }
@@ -138,7 +114,7 @@ double Particle::force_work(std::span<const double> y) {
   for (std::size_t i = 0; i < size(); ++i) {
     if (!is_loaded(i)) continue;
     evaluate_contact(i, y[setup_->wall_index[i]], y[k_radius]);
-    const double position = contact(i).displacement - carried_by_centre(i, y);
+    const double position = contact(i).displacement - centre().moved_towards(i, y.subspan(k_centre));
     sum += count(i) * contact(i).contact.force * position;
   }
   return sum;
@@ -164,15 +140,15 @@ void Particle::sum_up(double xi) {
   for (std::size_t i = 0; i < size(); ++i) {
     Instant& now = at_.contacts[i];
     const bool is_under_force = is_loaded(i);
-    const double speed = walls_[i].drive.rate();
+    const double speed = drive(i).rate();
     now.rate_by_time = is_under_force ? 0.0 : speed;
     now.rate_by_growth = 0.0;
     if (is_under_force) set_rates_under_force(i);
     if (!branches_[i].touches()) continue;
     if (is_under_force) {
       power -= count(i) * now.position * speed;
-      force_work += count(i) * walls_[i].drive.value(xi) * now.position;
-    } else if (walls_[i].bears) {
+      force_work += count(i) * drive(i).value(xi) * now.position;
+    } else if (walls_.bears(i)) {
       power += count(i) * now.contact.force * speed;
     }
     if (is_free) load_centre(i);
@@ -192,7 +168,7 @@ void Particle::load_centre(std::size_t i) {
   const ContactBranch& branch = branches_[i];
   const Contact& c = contact(i).contact;
   const double stiffness = branch.tangent_stiffness(law(), c);
-  const double speed = walls_[i].drive.rate();
+  const double speed = drive(i).rate();
   CentreLoad load{.count = count(i)};
   if (!is_slight(i)) {
     load.force = c.force;
@@ -229,7 +205,7 @@ void Particle::set_rates_under_force(std::size_t i) {
     }
   }
   if (branch.touches() && c.by_overlap > 0.0) {
-    now.rate_by_time = walls_[i].drive.rate() / c.by_overlap;
+    now.rate_by_time = drive(i).rate() / c.by_overlap;
     now.rate_by_growth = -1.0 - c.by_radius / c.by_overlap;
   } else if (branch.touches() || branch.resting >= branch.touching_overlap(law(), at_.r) - at_.r) {
     now.rate_by_growth = -1.0;  // without load the wall stays at the surface
@@ -279,35 +255,6 @@ Motion Particle::growing_motion() const {
   return result;
 }
 
-double Particle::prescribed_position(std::size_t i, double xi) const noexcept {
-  // As exact as std::lerp, which takes longer than the rest of this.
-  const contacts::WallDrive& drive = walls_[i].drive;
-  return xi == 1.0 ? drive.end() : drive.start() + xi * drive.rate();
-}
-
-double Particle::carried_by_centre(std::size_t i, std::span<const double> y) const noexcept {
-  double distance = 0.0;
-  for (int k = 0; k < centre().count(); ++k) distance += centre().direction(i)[k] * y[centre_index(k)];
-  return distance;
-}
-
-void Particle::move_walls(double xi, std::span<double> y) const {
-  if (!setup_->takes_forces) return;
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (!is_loaded(i)) continue;
-    double& wall = y[setup_->wall_index[i]];
-    wall = branches_[i].displacement_under(law(), y[k_radius], walls_[i].drive.value(xi), wall);
-  }
-}
-
-void Particle::record_walls(double xi, std::span<double> y) const noexcept {
-  if (!setup_->takes_forces) return;
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (setup_->classes[i].takes_force && !is_loaded(i))
-      y[setup_->wall_index[i]] = prescribed_position(i, xi) + carried_by_centre(i, y);
-  }
-}
-
 double Particle::magnitude_of_forces() const noexcept {
   double sum = 0.0;
   for (std::size_t i = 0; i < size(); ++i) sum += count(i) * std::abs(contact(i).contact.force);
@@ -328,133 +275,8 @@ double Particle::force_rounding() const {
   return *(force_rounding_ = 4.0 * round_off * sum);
 }
 
-double Particle::resolution() const {
-  return std::max(k_resolution,
-                  elastic_overlap(ElasticProfile::parabola, law().material.composite_modulus, 1.0, force_rounding()));
-}
-
-/// True if an overlap is below the resolution; cheaper than comparing it with resolution().
-bool Particle::is_below_resolution(double overlap) const {
-  return overlap < k_resolution || hertz_force(law().material.composite_modulus, 1.0, overlap) < force_rounding();
-}
-
-bool Particle::is_idle_touch(std::size_t i) const {
-  if (is_loaded(i)) return false;
-  const ContactBranch& branch = branches_[i];
-  const bool may_be_idle = branch.regime == Regime::elastic ? branch.is_on_primary_branch || !law().adheres()
-                                                            : branch.regime == Regime::unloading && !law().adheres();
-  return may_be_idle && is_below_resolution(contact(i).overlap - branch.touching_overlap(law(), at_.r));
-}
-
 /// True for a prescribed force that is round-off beside the others and that no contact supports. Its load on the centre
 /// is left out: it would only push the centre off an idle wall, which then comes back.
-bool Particle::is_slight(std::size_t i) { return walls_[i].may_be_slight && !is_supported(*this, i, 1.0, supports_); }
-
-// --- rates of one contact
-
-namespace {
-
-/// Rate of a prescribed force less the force that growth takes away, over the sum of their magnitudes.
-double loaded_rate(const Particle& p, double loading, double by_radius, double growth) noexcept {
-  const double taken = by_radius * growth;
-  const double scale = std::abs(loading) + std::abs(taken);
-  if (scale > 0.0) return (loading - taken) / scale;
-  // At the very start of growth the rate of the radius is zero, and about to become positive.
-  return p.mode.is_growing && by_radius > 0.0 ? -1.0 : 0.0;
-}
-
-}  // namespace
-
-double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  const double carried = p.is_loaded(i) ? 0.0 : p.centre().direction(i).dot(motion.centre);
-  return p.contact(i).rate_by_time + p.contact(i).rate_by_growth * motion.growth + carried;
-}
-
-double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  if (!p.is_loaded(i)) return inward_rate(p, i, motion) / p.speed_scale();
-  const Contact& c = p.contact(i).contact;
-  return loaded_rate(p, p.drive(i).rate(), c.by_overlap + c.by_radius, motion.growth);
-}
-
-double overlap_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  if (!p.is_loaded(i)) return (inward_rate(p, i, motion) + motion.growth) / p.speed_scale();
-  return loaded_rate(p, p.drive(i).rate(), p.contact(i).contact.by_radius, motion.growth);
-}
-
-double primary_branch_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  return p.law().is_shifted() ? wall_rate(p, i, motion) : overlap_rate(p, i, motion);
-}
-
-double edge_rate(const Particle& p, std::size_t i, const Motion& motion) {
-  const Instant& now = p.contact(i);
-  double overlap_speed = inward_rate(p, i, motion) + motion.growth;
-  // The rate of a force-controlled contact that is just being made has no bound: the sign of the force's rate decides,
-  // however small that is, and growth does not count.
-  const bool is_being_made = p.is_loaded(i) && !(now.contact.by_overlap > 0.0);
-  if (is_being_made) overlap_speed = p.drive(i).rate();
-  if (is_being_made || motion.growth == 0.0) {
-    // If a free centre keeps up with the wall, the difference of their speeds is round-off, of either sign.
-    const double rounding = p.is_loaded(i) ? 0.0 : k_zero_guard * (std::abs(now.rate_by_time) + motion.centre.norm());
-    return overlap_speed > rounding ? 1.0 : overlap_speed < -rounding ? -1.0 : 0.0;
-  }
-  return p.branch(i).press_rate(p.law(), p.at().r, now.overlap, now.contact.contact_radius, overlap_speed,
-                                motion.growth);
-}
-
-double force_rate(const Particle& p, std::size_t i, const Motion& motion) {
-  const Contact& c = p.contact(i).contact;
-  const double scale = p.branch(i).unpeeled_stiffness(p.law(), p.at().r, c) * p.speed_scale();
-  const double rate = c.by_overlap * (inward_rate(p, i, motion) + motion.growth) + c.by_radius * motion.growth;
-  return scale > 0.0 ? rate / scale : 0.0;
-}
-
-double rate_if_unloaded(Particle& p, std::size_t i, double xi, std::span<const double> y) {
-  const ContactBranch before = p.branch(i);
-  p.set_branch(i, before.unloaded(p.law(), y[k_radius], p.contact(i).overlap));
-  p.evaluate(xi, y);
-  const double stiffer = std::max(1.0, p.contact(i).contact.by_overlap / p.law().plastic_stiffness());
-  const double rate = stiffer * primary_branch_rate(p, i, p.motion(p.mode.is_growing));
-  p.set_branch(i, before);
-  p.evaluate(xi, y);
-  return rate;
-}
-
-// --- growth
-
-bool gate_is_open(const Particle& p, const Motion& motion) {
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.takes_part(i)) continue;
-    // Next to stiff contacts the rate of an idle contact loses digits.
-    const GrowthDrive drive{.inward_rate = inward_rate(p, i, motion),
-                            .least_rate = (p.is_idle(i) ? k_at_rest : k_zero_guard) * p.speed_scale(),
-                            .is_force_controlled = p.is_loaded(i),
-                            .rises = p.drive(i).rate() > 0.0,
-                            .is_on_primary_branch = p.branch(i).is_on_primary_branch};
-    if (opens_gate(p.setup().settings.radius_rule, drive)) return true;
-  }
-  return false;
-}
-
-double growth_drive(const Particle& p, const Motion& motion) noexcept {
-  const double scale = p.at().volume.time_scale;
-  bool goes_in = false;
-  bool goes_out = false;
-  const bool is_undecided = !(scale > 0.0) && motion.demand == 0.0;
-  for (std::size_t i = 0; is_undecided && i < p.size(); ++i) {
-    if (!p.takes_part(i)) continue;
-    const double rate = wall_rate(p, i, motion);
-    goes_in = goes_in || rate > 0.0;
-    goes_out = goes_out || rate < 0.0;
-  }
-  return growth_drive(motion.demand, scale, goes_out && !goes_in, p.law().material.bulk_compliance > 0.0);
-}
-
-bool has_greatest_force(const Particle& p, std::size_t i) noexcept {
-  return p.is_loaded(i) && p.branch(i).regime == Regime::fully_plastic;
-}
-
-double stiffness_left(const Particle& p, std::size_t i) noexcept {
-  return p.contact(i).contact.by_overlap / p.law().plastic_stiffness();
-}
+bool Particle::is_slight(std::size_t i) { return walls_.may_be_slight(i) && !is_supported(*this, i, 1.0, supports_); }
 
 }  // namespace monograin::mdr

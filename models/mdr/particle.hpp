@@ -10,14 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "contacts/wall_drive.hpp"
-#include "mdr/setup.hpp"
+#include "mdr/walls.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
-
-/// Share of the forces on a free centre that is round-off in their balance.
-inline constexpr double k_no_force = 1e-9;
 
 /// One contact class at an instant.
 struct Instant {
@@ -82,10 +78,9 @@ class Particle {
   // Program.
 
   void set_drives(std::span<const Ramp> ramps);
-  [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return walls_[i].drive; }
-  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return walls_[i].drive.is_force_controlled(); }
-  /// Largest rate of a wall under displacement control; 1 where none moves.
-  [[nodiscard]] double speed_scale() const noexcept;
+  [[nodiscard]] const Walls& walls() const noexcept { return walls_; }
+  [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return walls_.drive(i); }
+  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return walls_.is_loaded(i); }
 
   // Branches and mode.
 
@@ -98,7 +93,6 @@ class Particle {
   [[nodiscard]] bool takes_part(std::size_t i) const noexcept {
     return mdr::takes_part(setup_->settings.radius_rule, branches_[i].regime);
   }
-  [[nodiscard]] bool peels_anywhere() const noexcept;
   /// Sets whether a contact bears. A contact that no others balance does not: the search for the balance leaves it a
   /// different force at every instant, which does no work.
   void set_bears(std::size_t i, bool bears);
@@ -135,36 +129,12 @@ class Particle {
   /// @throws std::domain_error where the free surface is used up
   [[nodiscard]] Motion growing_motion() const;
 
-  // Walls at a state.
-
-  /// By how much the centre has moved towards a wall.
-  [[nodiscard]] double carried_by_centre(std::size_t i, std::span<const double> y) const noexcept;
-  /// Moves the force-controlled walls in y to their displacements under the prescribed forces, at the radius in y.
-  void move_walls(double xi, std::span<double> y) const;
-  /// Writes the unknowns of walls whose force is prescribed in other steps only.
-  void record_walls(double xi, std::span<double> y) const noexcept;
-
-  // Round-off of a free centre.
-
   /// Sum of the magnitudes of all wall forces.
   [[nodiscard]] double magnitude_of_forces() const noexcept;
   /// Largest net force on the centre that is round-off of forces that balance.
   [[nodiscard]] double force_rounding() const;
-  /// Largest overlap of an idle contact: the round-off of lengths, or the overlap to which the round-off of the other
-  /// forces presses it. Other contacts may bear much more, and be much stiffer.
-  [[nodiscard]] double resolution() const;
-  /// True for an idle contact: the wall touches a particle with a free centre and carries no load. Its overlap and its
-  /// rate are round-off; it leaves no dent, and is lost when the gap exceeds the resolution.
-  [[nodiscard]] bool is_idle(std::size_t i) const { return centre().acts(i) && is_idle_touch(i); }
 
  private:
-  struct Wall {
-    contacts::WallDrive drive;
-    bool may_be_slight = false;  ///< its prescribed force is round-off beside the others during the whole step
-    bool bears = true;           ///< false: its contact is balanced by no others, and does no work
-  };
-
-  [[nodiscard]] double prescribed_position(std::size_t i, double xi) const noexcept;
   void sum_up(double xi);
   void load_centre(std::size_t i);
   void set_rates_under_force(std::size_t i);
@@ -174,11 +144,9 @@ class Particle {
     ++revision_;
     force_rounding_.reset();
   }
-  [[nodiscard]] bool is_idle_touch(std::size_t i) const;
-  [[nodiscard]] bool is_below_resolution(double overlap) const;
 
   std::shared_ptr<const Setup> setup_;
-  std::vector<Wall> walls_;
+  Walls walls_;
   std::vector<CentreVector> supports_;  ///< work space of is_slight()
   std::vector<ContactBranch> branches_;
   std::uint64_t revision_ = 0;  ///< counts changes of all that an evaluation depends on beside the state
@@ -188,38 +156,5 @@ class Particle {
   std::uint64_t at_revision_ = 0;
   mutable std::optional<double> force_rounding_{};  ///< cached, for the present contacts and branches
 };
-
-// --- rates of one contact
-
-/// d(delta_o)/dxi of a wall, towards the centre positive.
-[[nodiscard]] double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
-/// Inward rate of a wall over speed_scale(), of order one. Under force control only its sign has a meaning: it is the
-/// rate of the prescribed force less the force that growth takes away, over the sum of their magnitudes.
-[[nodiscard]] double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
-/// Rate of the overlap, in the units of wall_rate().
-[[nodiscard]] double overlap_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
-/// Rate of the quantity that defines the largest overlap: the overlap itself, or the displacement of the wall with
-/// delta_max_rule = shifted.
-[[nodiscard]] double primary_branch_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
-/// Rate at which the springs at the edge of a contact are pressed (+) or stretched (-), of order one.
-[[nodiscard]] double edge_rate(const Particle& p, std::size_t i, const Motion& motion);
-/// Rate of a contact's force, over its rate if the edge stuck and the overlap grew with speed_scale().
-[[nodiscard]] double force_rate(const Particle& p, std::size_t i, const Motion& motion);
-/// Rate of the largest overlap if this contact began to unload here, times the ratio of stiffnesses. If this rate is
-/// positive, the contact would load again as soon as it unloads, and alternate without end: it stays on its loading
-/// branch until the rate is negative.
-[[nodiscard]] double rate_if_unloaded(Particle& p, std::size_t i, double xi, std::span<const double> y);
-
-// --- growth
-
-/// True if the rule lets the radius grow under this motion of the contacts.
-[[nodiscard]] bool gate_is_open(const Particle& p, const Motion& motion);
-/// Demand for growth over the sum of the magnitudes whose difference it is, of order one.
-[[nodiscard]] double growth_drive(const Particle& p, const Motion& motion) noexcept;
-
-/// True for a plastic contact under a prescribed force: at a given radius there is a largest force that it bears.
-[[nodiscard]] bool has_greatest_force(const Particle& p, std::size_t i) noexcept;
-/// Stiffness of a contact over ContactLaw::plastic_stiffness(), that of a shallow plastic contact.
-[[nodiscard]] double stiffness_left(const Particle& p, std::size_t i) noexcept;
 
 }  // namespace monograin::mdr

@@ -20,6 +20,9 @@
 
 namespace monograin::mdr {
 
+/// Share of the forces on a free centre that is round-off in their balance.
+inline constexpr double k_no_force = 1e-9;
+
 struct Settings {
   double initial_radius = 0.0;                                    ///< R0 [m], > 0
   double youngs_modulus = 0.0;                                    ///< E [Pa], > 0

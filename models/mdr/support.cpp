@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "mdr/guards.hpp"
+#include "mdr/rates.hpp"
+#include "mdr/resolution.hpp"
 #include "reaction_cone.hpp"
 #include "system/limit.hpp"
 #include "system/resolution.hpp"
@@ -116,7 +118,7 @@ std::optional<std::size_t> nearest_partner(const Particle& p, std::size_t i, boo
 bool idle_contacts_have_to_bear(const Particle& p, double xi) {
   std::vector<CentreVector> bearing;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.branch(i).touches() || p.is_loaded(i) || p.is_idle(i) || !p.centre().acts(i)) continue;
+    if (!p.branch(i).touches() || p.is_loaded(i) || is_idle(p, i) || !p.centre().acts(i)) continue;
     bearing.push_back(p.centre().direction(i).normalized());
     if (!p.branch(i).edge.follows()) bearing.emplace_back(-p.centre().direction(i).normalized());
   }
@@ -270,7 +272,7 @@ bool lose_idle_contacts(Particle& p, double xi, std::span<const double> y, std::
                         std::vector<Event>& log) {
   std::vector<IdleWall> walls;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.is_idle(i)) walls.push_back({i});
+    if (is_idle(p, i)) walls.push_back({i});
   }
   if (walls.empty()) return false;
   std::vector<IdleWall> unopposed = walls;

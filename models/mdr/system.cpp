@@ -5,6 +5,7 @@
 
 #include "mdr/centre_search.hpp"
 #include "mdr/equilibrium.hpp"
+#include "mdr/rates.hpp"
 #include "mdr/support.hpp"
 #include "system/difficulty.hpp"
 #include "system/limit.hpp"
@@ -160,8 +161,8 @@ void System::solve(double xi, std::span<double> y) {
   if (!now_.particle.mode.is_growing) return complete(xi, y);
   grow(now_.particle, xi, y);
   check_softening(now_.particle);
-  now_.particle.move_walls(xi, y);  // to the radius of the last iteration
-  now_.particle.record_walls(xi, y);
+  move_walls(now_.particle, xi, y);  // to the radius of the last iteration
+  record_walls(now_.particle, xi, y);
 }
 
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {

@@ -39,6 +39,15 @@ TEST(MdrFreeCentre, DoesNotMoveWhereItIsFixed) {
   for (std::size_t i = 0; i < k_cross.size(); ++i) EXPECT_FALSE(centre.acts(i));
 }
 
+TEST(MdrFreeCentre, HasMovedTowardsAWallByItsPathAlongTheNormal) {
+  const FreeCentre centre(walls(k_cross), true);
+  const CentreVector path{0.1, -0.2, 0.0};
+  const std::vector<double> state{0.1, -0.2, 7.0};  // the last entry is no direction of the centre
+  for (std::size_t i = 0; i < k_cross.size(); ++i) {
+    EXPECT_DOUBLE_EQ(centre.moved_towards(i, state), k_cross[i].dot(centre.in_space(path)));
+  }
+}
+
 TEST(MdrFreeCentre, MovesAlongTheMeanNormalsOnly) {
   EXPECT_EQ(FreeCentre(walls(k_cross), true).count(), 2);
   // Walls of one class that face each other have no mean normal.
