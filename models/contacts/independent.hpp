@@ -38,15 +38,15 @@
 #pragma once
 
 #include <concepts>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "contacts/centre/centre_mode.hpp"
-#include "contacts/columns.hpp"
+#include "contacts/followers.hpp"
+#include "contacts/guards.hpp"
 #include "contacts/scales.hpp"
-#include "contacts/wall_contact.hpp"
+#include "contacts/visible.hpp"
 
 namespace monograin::contacts {
 
@@ -64,21 +64,19 @@ class IndependentContacts final : public HybridSystem {
  public:
   IndependentContacts(Law law, const Settings& settings, std::vector<ContactClass> classes)
       : law_(std::move(law)),
-        length_(settings.initial_radius),
-        force_unit_(law_.unit_force(length_)),
+        units_{settings.initial_radius, law_.unit_force(settings.initial_radius)},
         classes_(std::move(classes)),
         contacts_(classes_.size()),
         slots_(classes_.size()),
         displacements_(classes_.size()),
-        columns_(has_stored_energy(), k_has_contact_area, Law::k_regimes, classes_, settings.centre_is_free),
-        scales_(scales_of(law_, settings.largest_displacement / length_, settings.largest_force / force_unit_)) {
+        followers_(law_, classes_),
+        columns_(stores_energy(), k_has_contact_area<Law>, Law::k_regimes, classes_, settings.centre_is_free),
+        scales_(scales_of(law_, settings.largest_displacement / units_.length, settings.largest_force / units_.force)) {
     for (std::size_t i = 0; i < classes_.size(); ++i) {
-      if constexpr (k_has_followers) is_follower_.push_back(law_.follows(classes_[i]));
       if (!classes_[i].takes_force) continue;
       slots_[i] = unknowns_.size();
       unknowns_.push_back({classes_[i].name, Unknown::Kind::differential, scales_.coordinate, true});
     }
-    while (leader_ < classes_.size() && is_follower(leader_)) ++leader_;
     work_slot_ = unknowns_.size();
     unknowns_.push_back({"work", Unknown::Kind::quadrature, scales_.magnitudes.work, false});
     if (settings.centre_is_free) centre_.emplace(classes_, scales_.reach, unknowns_);
@@ -95,12 +93,12 @@ class IndependentContacts final : public HybridSystem {
 
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
-  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_.list(); }
   [[nodiscard]] std::span<const Observable> observables() const noexcept override { return columns_.observables(); }
   [[nodiscard]] bool is_open(int contact_class) const noexcept override {
     const auto i = static_cast<std::size_t>(contact_class);
-    const Contact& c = contacts_[leading(i)];
-    return is_follower(i) ? law_.regime(c.branch(), c.touches()) == 0 : !c.touches();
+    const Contact& c = contacts_[followers_.leading(i)];
+    return followers_.follows(i) ? law_.regime(c.branch(), c.touches()) == 0 : !c.touches();
   }
   [[nodiscard]] std::function<void()> checkpoint() override {
     return [this, then = *this] { *this = then; };
@@ -111,12 +109,8 @@ class IndependentContacts final : public HybridSystem {
     has_begun_ = false;
     if constexpr (requires(Law & law) { law.start(); }) law_.start();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      std::vector<int> followers;
-      for (std::size_t k = 0; i == leader_ && k < contacts_.size(); ++k) {
-        if (is_follower(k)) followers.push_back(static_cast<int>(k));
-      }
-      contacts_[i] =
-          Contact(static_cast<int>(i), -classes_[i].gap / length_, scales_.force_per_coordinate, std::move(followers));
+      contacts_[i] = Contact(static_cast<int>(i), -classes_[i].gap / units_.length, scales_.force_per_coordinate,
+                             followers_.of(i));
     }
     solve(0.0, y);
   }
@@ -126,13 +120,13 @@ class IndependentContacts final : public HybridSystem {
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const bool is_by_force = ramps[i].control == Control::force;
       const double stood = is_by_force ? contacts_[i].displacement_at(law_, y[slots_[i]]) : 0.0;
-      const WallDrive drive(ramps[i], is_by_force ? force_unit_ : length_);
+      const WallDrive drive(ramps[i], is_by_force ? units_.force : units_.length);
       at[i] = contacts_[i].take_up(law_, drive, stood, classes_[i].takes_force, carried(i, y));
       // y takes the coordinates of this step even if the step cannot begin, so that the last row shows its start.
       if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate(law_, 0.0, at[i]);
     }
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (is_follower(i) || follows_centre(i)) continue;
+      if (followers_.follows(i) || follows_centre(i)) continue;
       if (const auto end = contacts_[i].begin_step(law_, at[i], is_seen(i), log, carried(i, y)))
         throw CannotBegin(*end);
     }
@@ -207,37 +201,39 @@ class IndependentContacts final : public HybridSystem {
   }
 
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override {
-    const bool asks_for_velocity =
-        centre_ && std::ranges::find(guards_, int{Centre::k_retreat}, &Guard::kind) != guards_.end();
+    const bool asks_for_velocity = centre_ && guards_.has(k_retreat);
     const FreeCentre::Vector velocity = asks_for_velocity ? centre_velocity(xi, y) : FreeCentre::Vector::Zero();
-    for (std::size_t g = 0; g < guards_.size(); ++g) {
-      const auto i = static_cast<std::size_t>(guards_[g].index);
+    for (std::size_t g = 0; g < guards_.list().size(); ++g) {
+      const Guard& guard = guards_.list()[g];
+      const double target = guards_.target(g);
+      const auto i = static_cast<std::size_t>(guard.index);
       if (follows_centre(i)) {
-        values[g] = centre_->guard_value(law_, contacts_, i, guards_[g].kind, targets_[g], xi, y, velocity);
+        values[g] = centre_->guard_value(law_, contacts_, i, guard.kind, target, xi, y, velocity);
         continue;
       }
       // The ramp is the scale: it is as short as the contact is shallow.
-      const WallDrive& ramp = drive(i);
-      values[g] = (ramp.value(xi) - targets_[g]) / ramp.size();
+      const WallDrive& ramp = contacts_[i].drive();
+      values[g] = (ramp.value(xi) - target) / ramp.size();
     }
   }
 
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                 std::vector<Event>& log) override {
     for (const std::size_t g : fired) {
-      const auto i = static_cast<std::size_t>(guards_[g].index);
+      const Guard& guard = guards_.list()[g];
+      const auto i = static_cast<std::size_t>(guard.index);
       Contact& c = contacts_[i];
       std::optional<DomainEnd> end;
-      if (guards_[g].kind == Centre::k_made)
+      if (guard.kind == k_made)
         c.make(law_, true, log);
-      else if (guards_[g].kind == Centre::k_lost)
+      else if (guard.kind == k_lost)
         c.lose(law_, log, carried(i, y));
-      else if (guards_[g].kind == Centre::k_retreat)
-        c.retreat(law_, displacement(i, xi, y), guards_[g].name, log, carried(i, y));
+      else if (guard.kind == k_retreat)
+        c.retreat(law_, displacement(i, xi, y), guard.name, log, carried(i, y));
       else
         end = c.pass(law_, *c.next(law_), log);
       // The next boundary may lie within the round-off of the ramp, as in a very shallow dent: it is passed at once.
-      const bool is_pressed_on = guards_[g].kind == Centre::k_made || guards_[g].kind == Centre::k_boundary;
+      const bool is_pressed_on = guard.kind == k_made || guard.kind == k_boundary;
       if (!end && is_pressed_on && !follows_centre(i)) end = c.pass_reached(law_, xi, log);
       if (end) return end;
     }
@@ -253,17 +249,17 @@ class IndependentContacts final : public HybridSystem {
       std::ranges::for_each(displacements_, [&](double d) { law_.note(d); });
     columns_.write(
         has_energies() ? energies(y[work_slot_]) : k_no_energies, contacts_.size(),
-        [&](std::size_t i) { return visible(i, xi, displacements_[leading(i)], carried(i, y)); }, values);
-    if (centre_) write_centre_columns(centre_->in_space(y) * length_, values);
+        [&](std::size_t i) { return visible(i, xi, displacements_[followers_.leading(i)], carried(i, y)); }, values);
+    if (centre_) write_centre_columns(centre_->in_space(y) * units_.length, values);
   }
 
   /// @throws std::logic_error for what the law does not have
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override {
     const bool is_of_area = quantity == Quantity::pressure || quantity == Quantity::contact_radius;
-    if (is_of_area && !k_has_contact_area) throw std::logic_error("no such quantity at a wall of this model");
+    if (is_of_area && !k_has_contact_area<Law>) throw std::logic_error("no such quantity at a wall of this model");
     const auto i = static_cast<std::size_t>(contact_class);
-    const VisibleContact shown = visible(i, xi, displacement(leading(i), xi, y), carried(i, y));
-    return quantity_of(wall_of(shown, length_), quantity);
+    const VisibleContact shown = visible(i, xi, displacement(followers_.leading(i), xi, y), carried(i, y));
+    return quantity_of(wall_of(shown, units_.length), quantity);
   }
   /// Present value of what a control prescribes, where a ramp begins. For an integrated displacement, gives the exact
   /// one under the prescribed force, without the integrator's error.
@@ -271,8 +267,8 @@ class IndependentContacts final : public HybridSystem {
     const auto i = static_cast<std::size_t>(contact_class);
     if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
     const double d = displacement(i, xi, y);
-    if (!contacts_[i].is_integrated(law_)) return (d - carried(i, y)) * length_;
-    return (contacts_[i].displacement_under(law_, drive(i).value(xi), d) - carried(i, y)) * length_;
+    if (!contacts_[i].is_integrated(law_)) return (d - carried(i, y)) * units_.length;
+    return (contacts_[i].displacement_under(law_, contacts_[i].drive().value(xi), d) - carried(i, y)) * units_.length;
   }
 
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override {
@@ -281,12 +277,7 @@ class IndependentContacts final : public HybridSystem {
       const auto i = static_cast<std::size_t>(contact_class);
       const double d = displacement(i, xi, y);
       if (contacts_[i].bears(law_, d)) points = law_.surface(contacts_[i].branch(), d);
-      for (SurfacePoint& point : points) {
-        point.radius *= length_;
-        point.pressure *= stress_unit();
-        point.displacement *= length_;
-        point.relaxed_height *= length_;
-      }
+      for (SurfacePoint& point : points) point = units_.in_si(point);
     }
     return points;
   }
@@ -309,32 +300,23 @@ class IndependentContacts final : public HybridSystem {
   using Contact = WallContact<Law>;
   static constexpr bool k_has_work = requires(Law & law, const Branch& b) { law.work(b, 1.0); };
   static constexpr bool k_can_store_energy = requires(Law & law, const Branch& b) { law.stored(b, 1.0); };
-  static constexpr bool k_has_contact_area = requires(Law & law, const Branch& b) { law.contact(b, 1.0); };
-
-  static constexpr bool k_has_followers = requires(Law & law, const ContactClass& walls) { law.follows(walls); };
 
   using Centre = CentreMode<Law>;
 
-  [[nodiscard]] const WallDrive& drive(std::size_t i) const noexcept { return contacts_[i].drive(); }
-  [[nodiscard]] bool is_follower(std::size_t i) const noexcept { return k_has_followers && is_follower_[i]; }
-  /// Index of the contact itself; for a follower, of its leader.
-  [[nodiscard]] std::size_t leading(std::size_t i) const noexcept { return is_follower(i) ? leader_ : i; }
-  [[nodiscard]] double stress_unit() const noexcept { return force_unit_ / (length_ * length_); }
   /// @param work  over the force unit and R0
   [[nodiscard]] Energies energies(double work) {
     double stored = 0.0;
     if constexpr (k_can_store_energy) {
-      if (has_stored_energy()) {
+      if (stores_energy()) {
         stored = sum([&](std::size_t i) {
           const double d = displacements_[i];
           return contacts_[i].bears(law_, d) ? law_.stored(contacts_[i].branch(), d) : 0.0;
         });
       }
     }
-    const double energy_unit = force_unit_ * length_;
-    return {work * energy_unit, stored * energy_unit};
+    return {work * units_.energy(), stored * units_.energy()};
   }
-  [[nodiscard]] bool has_stored_energy() const {
+  [[nodiscard]] bool stores_energy() const {
     if constexpr (requires(const Law& law) { law.has_stored_energy(); }) return law_.has_stored_energy();
     return k_can_store_energy;
   }
@@ -344,7 +326,7 @@ class IndependentContacts final : public HybridSystem {
   [[nodiscard]] double sum(OfContact&& of_contact) const {
     double total = 0.0;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (!is_follower(i)) total += classes_[i].multiplicity() * of_contact(i);
+      if (!followers_.follows(i)) total += classes_[i].multiplicity() * of_contact(i);
     }
     return total;
   }
@@ -381,7 +363,8 @@ class IndependentContacts final : public HybridSystem {
                                      std::span<const std::size_t> fired) {
     if (!centre_) return std::nullopt;
     const auto is_decided = [&](std::size_t i) {
-      return std::ranges::any_of(fired, [&](std::size_t g) { return static_cast<std::size_t>(guards_[g].index) == i; });
+      return std::ranges::any_of(fired,
+                                 [&](std::size_t g) { return static_cast<std::size_t>(guards_.list()[g].index) == i; });
     };
     return centre_->find(
         law_, contacts_, xi, y, is_decided, [this](std::size_t i) { return is_seen(i); }, log);
@@ -393,85 +376,36 @@ class IndependentContacts final : public HybridSystem {
   /// @param d        displacement of the contact, or of the leader that it follows
   /// @param carried  by how much a free centre has moved towards the wall
   [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d, double carried) {
-    VisibleContact shown = is_follower(i) ? visible_follower(d) : visible_contact(i, xi, d);
-    shown.displacement = is_follower(i) ? drive(i).value(xi) : shown.overlap - carried;
-    shown.displacement *= length_;
-    shown.overlap *= length_;
-    shown.force *= force_unit_;
-    shown.contact_radius *= length_;
-    shown.pressure *= stress_unit();
-    return shown;
-  }
-  /// Numbers of a contact that is no follower in a row, in units of the law.
-  [[nodiscard]] VisibleContact visible_contact(std::size_t i, double xi, double d) const {
     const Contact& c = contacts_[i];
-    VisibleContact shown{.overlap = d, .regime = static_cast<double>(law_.regime(c.branch(), c.touches()))};
-    if (!c.bears(law_, d)) return shown;
-    if constexpr (k_has_contact_area) {
-      const BearingContact bearing = law_.contact(c.branch(), d);
-      shown.force = c.is_force_controlled() ? drive(i).value(xi) : bearing.force;
-      shown.contact_radius = bearing.contact_radius;
-      const double area = std::numbers::pi * bearing.contact_radius * bearing.contact_radius;
-      shown.pressure = area > 0.0 ? shown.force / area : 0.0;
-    } else {
-      shown.force = c.is_force_controlled() ? drive(i).value(xi) : law_.force(c.branch(), d);
+    if (followers_.follows(i)) {
+      VisibleContact shown = visible_follower(law_, contacts_[followers_.leader()], d);
+      shown.displacement = c.drive().value(xi);
+      return units_.in_si(shown);
     }
-    return shown;
-  }
-  [[nodiscard]] VisibleContact visible_follower(double d) {
-    if constexpr (requires(Law & law, const Branch& b) { law.follower(b, true, 1.0); }) {
-      const Contact& leader = contacts_[leader_];
-      return law_.follower(leader.branch(), leader.touches(), d);
-    } else {
-      return {};
-    }
+    VisibleContact shown = visible_contact(law_, c, xi, d);
+    shown.displacement = shown.overlap - carried;
+    return units_.in_si(shown);
   }
 
   /// Lists the guards that may fire before the end of the step.
   void arm_guards(double xi) {
     guards_.clear();
-    targets_.clear();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      const Contact& c = contacts_[i];
       if (follows_centre(i)) {
-        centre_->arm_guards(law_, c, i, xi, [&](int kind, int toward, std::string_view name, double target) {
-          guards_.push_back({.kind = kind, .index = static_cast<int>(i), .direction = toward, .name = name});
-          targets_.push_back(target);
-        });
-        continue;
-      }
-      const int direction = drive(i).direction();
-      if (is_follower(i) || direction == 0) continue;
-      if (direction > 0 && c.touches()) {
-        const auto ahead = c.next(law_);
-        const double target = ahead ? c.prescribed_at(law_, *ahead) : 0.0;
-        if (ahead && c.passes(target)) add_guard(Centre::k_boundary, i, direction, ahead->event, target);
-      } else if (c.passes_opening(law_) && c.touches() == (direction < 0)) {
-        const double opening = c.is_force_controlled() ? 0.0 : law_.opening(c.branch());
-        add_guard(direction < 0 ? Centre::k_lost : Centre::k_made, i, direction,
-                  direction < 0 ? "contact-lost" : c.made_event(law_), opening);
+        centre_->arm_guards(law_, contacts_[i], i, xi, guards_);
+      } else if (!followers_.follows(i)) {
+        arm_wall(law_, contacts_[i], i, guards_);
       }
     }
   }
-  void add_guard(int kind, std::size_t i, int direction, std::string_view name, double target) {
-    guards_.push_back({.kind = kind,
-                       .index = static_cast<int>(i),
-                       .direction = direction,
-                       .name = name,
-                       .is_exact = true,
-                       .is_monotone = true});
-    targets_.push_back(target);
-  }
 
   Law law_;
-  double length_;      ///< R0 [m]
-  double force_unit_;  ///< [N]
+  Units units_;
   std::vector<ContactClass> classes_;
   std::vector<Contact> contacts_;
   std::vector<std::size_t> slots_;     ///< index in y of the coordinate of each class that takes a force
   std::vector<double> displacements_;  ///< displacements of the contacts in a row
-  std::vector<bool> is_follower_;      ///< true: the contact follows the leader's displacement, and does not act back
-  std::size_t leader_ = 0;
+  Followers<Law> followers_;
   Columns columns_;
   Scales scales_;
   std::vector<Unknown> unknowns_;
@@ -479,8 +413,7 @@ class IndependentContacts final : public HybridSystem {
   std::optional<Centre> centre_;  ///< none: the centre is fixed
   std::vector<double> trial_;     ///< work space
   bool has_begun_ = false;
-  std::vector<Guard> guards_;
-  std::vector<double> targets_;  ///< for each guard, the prescribed value (or displacement, overlap) at its zero
+  Guards guards_;
 };
 
 }  // namespace monograin::contacts

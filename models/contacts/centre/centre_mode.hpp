@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "contacts/centre/free_centre.hpp"
-#include "contacts/wall_contact.hpp"
+#include "contacts/guards.hpp"
 
 namespace monograin::contacts {
 
@@ -129,12 +129,12 @@ class CentreMode {
 
   // --- guards of the contacts that depend on where the centre is
 
-  enum GuardKind : int { k_made, k_boundary, k_lost, k_retreat };
-  /// Calls add(kind, direction, name, target) for each guard of a contact. The target of a boundary is a displacement,
-  /// those of the others are overlaps.
-  template <class Add>
-  void arm_guards(const Law& law, const Contact& c, std::size_t i, double xi, Add&& add) const {
+  /// Arms the guards of a contact. The target of a boundary is a displacement, those of the others are overlaps.
+  void arm_guards(const Law& law, const Contact& c, std::size_t i, double xi, Guards& guards) const {
     const double overlap = c.drive().value(xi) + centre_.along(i, rest_) - law.opening(c.branch());
+    const auto add = [&](GuardKind kind, int direction, std::string_view name, double target) {
+      guards.add({.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name}, target);
+    };
     if (!c.touches()) {
       add(k_made, 1, c.made_event(law), overlap >= -k_touch ? k_touch : 0.0);
       return;
