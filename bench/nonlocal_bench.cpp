@@ -11,6 +11,8 @@
 
 #include "elastic/nonlocal_contacts.hpp"
 #include "elastic/nonlocal_coupling.hpp"
+#include "elastic/nonlocal_equilibrium.hpp"
+#include "elastic/nonlocal_rates.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -60,6 +62,7 @@ std::vector<Ramp> compression(const WallSet& set, const WallSet& grouped) {
 /// Times the solution of one state; linear extrapolation from the last two states gives the first guess.
 void solve(benchmark::State& state, const WallSet& set, const WallSet& grouped, const char* floor) {
   Contacts contacts({k_poisson_ratio, Terms::four}, set.classes, Centre::fixed);
+  EquilibriumSearch search(contacts);
   const std::vector<Ramp> ramps = compression(set, grouped);
   std::vector<double> y(contacts.unknown_count());
   std::vector<double> last(y.size());
@@ -76,7 +79,7 @@ void solve(benchmark::State& state, const WallSet& set, const WallSet& grouped, 
       last[j] = y[j];
       y[j] = next;
     }
-    contacts.solve(ramps, static_cast<double>(point) / k_points, y);
+    search.solve(contacts, ramps, static_cast<double>(point) / k_points, y);
     benchmark::DoNotOptimize(y.data());
   }
   state.SetLabel(floor);
@@ -97,7 +100,7 @@ struct Loaded {
   Contacts contacts{{k_poisson_ratio, Terms::four}, set.classes, Centre::fixed};
   std::vector<double> y = std::vector<double>(8, 0.0);
 
-  Loaded() { contacts.solve(compression(set, oblique_die()), 0.5, y); }
+  Loaded() { EquilibriumSearch(contacts).solve(contacts, compression(set, oblique_die()), 0.5, y); }
 };
 
 void margin_of_eight_walls(benchmark::State& state) {
@@ -117,9 +120,10 @@ BENCHMARK(least_pivot_of_eight_walls);
 void rates_of_eight_walls(benchmark::State& state) {
   Loaded loaded;
   const std::vector<Ramp> ramps = compression(loaded.set, oblique_die());
+  Rates rates(loaded.contacts);
   std::vector<double> dy(8);
   for (auto _ : state) {
-    loaded.contacts.rates(ramps, loaded.y, dy);
+    rates.find(loaded.contacts, ramps, loaded.y, dy);
     benchmark::DoNotOptimize(dy.data());
   }
 }

@@ -8,6 +8,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "elastic/nonlocal_equations.hpp"
+#include "elastic/nonlocal_equilibrium.hpp"
+
 namespace monograin::nonlocal {
 namespace {
 
@@ -42,7 +45,7 @@ class Path {
         return std::nullopt;
       }
       const auto count = static_cast<std::size_t>(point.size() - 1);
-      contacts_.residual(ramps_, xi_of(point), unknowns(point), {missing.data(), count});
+      residual(contacts_, ramps_, xi_of(point), unknowns(point), {missing.data(), count});
       missing[point.size() - 1] = tangent.dot(point - from) - distance;
       const Point step = solve(point, tangent, missing);
       point -= step;
@@ -65,14 +68,14 @@ class Path {
   /// least-norm solution leaves the centre in place along directions that no contact supports.
   [[nodiscard]] Point solve(const Point& point, const Point& border, const Point& right_side) {
     const Eigen::Index count = point.size() - 1;
-    contacts_.jacobian(ramps_, unknowns(point), jacobian_);
+    jacobian(contacts_, ramps_, unknowns(point), jacobian_);
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count + 1, count + 1);
     matrix.topLeftCorner(count, count) = jacobian_;
     matrix.row(count) = border;
     for (std::size_t j = 0; j < ramps_.size(); ++j) {
       const auto i = static_cast<Eigen::Index>(j);
-      const double slope = ramps_[j].end - ramps_[j].start;
-      if (ramps_[j].control == Control::displacement || slope == 0.0) {
+      const double slope = slope_of(ramps_[j]);
+      if (!takes_force(ramps_[j]) || slope == 0.0) {
         matrix(i, count) = -slope;
         continue;
       }
@@ -91,11 +94,12 @@ class Path {
 }  // namespace
 
 std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ramps, double end, std::span<double> y) {
+  EquilibriumSearch search(contacts);
   // Start away from first touch, where a contact under force control has an infinite rate.
   double xi = std::min(end, 1.0 / 64.0);
   for (;; xi *= 0.5) {
     try {
-      contacts.solve(ramps, xi, y);
+      search.solve(contacts, ramps, xi, y);
       break;
     } catch (const std::domain_error&) {
       if (xi < 1e-9) throw;
@@ -138,7 +142,7 @@ std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ra
     std::copy(found.begin(), found.end() - 1, y.begin());
     return xi_of(found);
   }
-  contacts.solve(ramps, end, y);
+  search.solve(contacts, ramps, end, y);
   return std::nullopt;
 }
 

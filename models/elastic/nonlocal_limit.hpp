@@ -16,7 +16,7 @@ namespace monograin::nonlocal {
 /// limit to the square root of round-off.
 /// @param ramps  over R and E R^2 (elastic/nonlocal_contacts.hpp)
 /// @param y      in: the state at xi = 0; out: the state at the limit, or at `end`
-/// @throws std::domain_error if there is no state before the limit (Contacts::solve), or if the path cannot be
+/// @throws std::domain_error if there is no state before the limit (EquilibriumSearch::solve), or if the path cannot be
 /// continued
 [[nodiscard]] std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ramps, double end,
                                                   std::span<double> y);

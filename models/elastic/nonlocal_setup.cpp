@@ -53,6 +53,9 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
     : settings_(settings),
       classes_(std::move(classes)),
       contacts_(settings.model, classes_, settings.centre),
+      search_(contacts_),
+      motion_(contacts_),
+      support_(contacts_),
       work_place_(contacts_.unknown_count()),
       pairs_(pairs_of(classes_)) {
   const double depth = set_scales();

@@ -191,7 +191,7 @@ void System::complete(double xi, std::span<double> y) {
   // Recomputes the gaps, and the position of a free centre: their errors would close walls that only touch.
   evaluate(xi, y);
   mark_closed();
-  contacts_.clear_centre(ramps_, xi, is_closed_, state_);
+  search_.clear_centre(contacts_, ramps_, xi, is_closed_, state_);
   note(y);
 }
 
@@ -216,7 +216,7 @@ void System::solve(double xi, std::span<double> y) {
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     is_own_mode = is_own_mode && (regimes_[i] == Regime::elastic || state_[i] <= touch_);
   }
-  or_pull_that_follows(xi, [&] { contacts_.solve(ramps_, xi, state_, is_own_mode); });
+  or_pull_that_follows(xi, [&] { search_.solve(contacts_, ramps_, xi, state_, is_own_mode); });
   note(y);
 }
 
@@ -231,13 +231,13 @@ double System::leave_singularity(double xi, std::span<double> y) {
     if (!is_loaded(i)) continue;
     const double end = end_of_force(i);
     const bool begins = state_[i] <= touch_ && prescribed(i, ahead) > prescribed(i, xi);
-    if (begins && contacts_.may_be_held(ramps_, state_, k_just_lost * touch_)) later = ahead;
+    if (begins && support_.may_be_held(contacts_, ramps_, state_, k_just_lost * touch_)) later = ahead;
     if (end > xi && end - xi < 2.0 * k_end_of_force) later = end;
   }
   if (later == xi) return xi;
   const double energy = contacts_.energy(state_);
   try {
-    contacts_.solve(ramps_, later, evaluate(later, y));
+    search_.solve(contacts_, ramps_, later, evaluate(later, y));
   } catch (const std::domain_error&) {
     return xi;  // the next evaluation from here throws again
   }
@@ -252,7 +252,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
     drawn_ramps_[i] = ramps_[i];
     if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (prescribed(i, xi) - now_[i].displacement);
   }
-  or_pull_that_follows(xi, [&] { contacts_.rates(drawn_ramps_, state_, rates_, touch_, k_pull, touches_); });
+  or_pull_that_follows(xi, [&] { motion_.find(contacts_, drawn_ramps_, state_, rates_, {touch_, k_pull, touches_}); });
   std::ranges::copy(rates_, dy.begin());
   // dF/dxi of every contact, and of the walls under force control.
   const auto force_rate = [&](std::size_t i) {
@@ -284,7 +284,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
   evaluate(xi, y);
-  or_pull_that_follows(xi, [&] { contacts_.residual(ramps_, xi, state_, res.first(state_.size())); });
+  or_pull_that_follows(xi, [&] { nonlocal::residual(contacts_, ramps_, xi, state_, res.first(state_.size())); });
   for (std::size_t i = 0; i < classes_.size(); ++i) {
     if (is_loaded(i)) res[i] = y[i] - std::pow(state_[i], k_force_power);
   }
@@ -298,7 +298,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     missing[static_cast<Eigen::Index>(k)] = dy[classes_.size() + k] - all_rates_[classes_.size() + k];
   }
   mark_closed();
-  contacts_.let_unheld_centre_go(ramps_, is_closed_, missing, res.subspan(classes_.size(), count));
+  motion_.let_unheld_centre_go(contacts_, ramps_, is_closed_, missing, res.subspan(classes_.size(), count));
 }
 
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
@@ -312,7 +312,7 @@ std::optional<double> System::closed_quadrature(double xi, std::span<const doubl
 std::optional<double> System::square_ahead(std::size_t i, double xi) {
   std::vector<double> ahead = state_;
   return contacts::side_ahead(xi, touch_, [&](double later) {
-    contacts_.solve(ramps_, later, ahead);
+    search_.solve(contacts_, ramps_, later, ahead);
     return ahead[i];
   });
 }
@@ -594,7 +594,7 @@ bool System::is_open(int contact_class) const noexcept {
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
   if (is_shallow_) return Difficulty::below_resolution;  // the whole program is
   if (contacts_.margin(evaluate(xi, y)) < k_hard_margin) return Difficulty::near_applicability_limit;
-  if (contacts_.free_count() == 0 || !contacts_.is_held_softly(ramps_, evaluate(xi, y), idle_)) return std::nullopt;
+  if (contacts_.free_count() == 0 || !is_held_softly(contacts_, ramps_, evaluate(xi, y), idle_)) return std::nullopt;
   return Difficulty::singular_balance;
 }
 

@@ -15,6 +15,9 @@
 #include <vector>
 
 #include "elastic/nonlocal_contacts.hpp"
+#include "elastic/nonlocal_equilibrium.hpp"
+#include "elastic/nonlocal_rates.hpp"
+#include "elastic/nonlocal_support.hpp"
 #include "system/hybrid_system.hpp"
 
 namespace monograin::nonlocal {
@@ -119,6 +122,9 @@ class System final : public HybridSystem {
   Settings settings_;
   std::vector<ContactClass> classes_;
   Contacts contacts_;
+  EquilibriumSearch search_;
+  Rates motion_;
+  CentreSupport support_;
   std::vector<Unknown> unknowns_;
   std::vector<Observable> observables_;
   std::size_t work_place_;

@@ -9,8 +9,6 @@
 namespace monograin::nonlocal {
 namespace {
 
-Eigen::Index as_index(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
-
 void require_apart(double angle, const ContactClass& first, const ContactClass& second) {
   if (!(angle < k_least_wall_angle)) return;
   throw std::invalid_argument("walls of '" + first.name + "' and '" + second.name + "' are " + std::to_string(angle) +

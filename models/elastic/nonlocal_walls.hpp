@@ -20,6 +20,8 @@ constexpr double k_least_wall_angle = 0.05;
 /// Differences of directions and couplings up to here are round-off.
 constexpr double k_same_surroundings = 1e-9;
 
+[[nodiscard]] inline Eigen::Index as_index(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
+
 struct Wall {
   Eigen::Vector3d normal;
   std::size_t contact_class;

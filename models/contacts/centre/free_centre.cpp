@@ -32,7 +32,6 @@ FreeCentre::FreeCentre(std::span<const ContactClass> classes)
       loads_(lines_.size()),
       forces_(classes.size()),
       overlaps_(classes.size()),
-      gone_in_(classes.size()),
       bears_(classes.size()) {
   for (const ContactClass& c : classes) counts_.push_back(c.multiplicity());
   to_clear_.reserve(classes.size());
@@ -216,26 +215,6 @@ FreeCentre::Matrix FreeCentre::held_directions(const CentreWalls& walls, double 
   return stiffest_directions();
 }
 
-/// Moves the centre by the smallest displacement after which none of the walls overlaps. Takes the walls in turn: a
-/// wall that still overlaps becomes a constraint, and the walls before it are solved again.
-/// @param along  projector on the directions in which the centre may move
-/// @return false, with c unchanged, if there is no such position
-bool FreeCentre::clear(std::span<const std::size_t> walls, const Matrix& along, Vector& c) const {
-  Vector now = c;
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    const std::size_t i = walls[k];
-    const double overlap = gone_in_[i] + lines_.arm(i).dot(now);
-    if (overlap <= k_round_off) continue;
-    const Vector path = along * lines_.arm(i);
-    const double share = path.squaredNorm();
-    if (!(share > k_no_direction * k_no_direction)) return false;
-    now = c - path * ((gone_in_[i] + lines_.arm(i).dot(c)) / share);
-    if (!clear(walls.first(k), along - path * path.transpose() / share, now)) return false;
-  }
-  c = now;
-  return true;
-}
-
 /// Moves the centre out of all walls that do not bear, except for one.
 /// @return false, with c unchanged, if these walls leave no room
 bool FreeCentre::clear_all_but(std::optional<std::size_t> left_out, const CentreWalls& walls,
@@ -243,12 +222,14 @@ bool FreeCentre::clear_all_but(std::optional<std::size_t> left_out, const Centre
   to_clear_.clear();
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     if (!acts(i) || roles[i] == Role::away || walls.prescribed_force(i) || i == left_out) continue;
-    gone_in_[i] = walls.overlap(i);
-    if (!bears_[i] && across_held(i) > k_no_direction) to_clear_.push_back(i);
+    if (bears_[i] || !(across_held(i) > k_no_direction)) continue;
+    to_clear_.push_back({i, lines_.arm(i), walls.overlap(i)});
   }
   Matrix free = Matrix::Zero();
   free.topLeftCorner(dimension(), dimension()).setIdentity();
-  return clear(to_clear_, free - held_directions_ * held_directions_.transpose(), c);
+  const auto overlaps = [](const Obstacle& wall, const Vector& at) { return !(wall.overlap(at) <= k_round_off); };
+  return clear(to_clear_, free - held_directions_ * held_directions_.transpose(), k_no_direction, overlaps,
+               c);
 }
 
 /// Component of a mean normal across the directions in which contacts bear.

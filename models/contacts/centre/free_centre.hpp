@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "contacts/centre/centre_lines.hpp"
+#include "contacts/centre/obstacles.hpp"
 
 namespace monograin::contacts {
 
@@ -104,7 +105,6 @@ class FreeCentre {
   [[nodiscard]] Matrix held_directions(const CentreWalls& walls, double least_overlap);
   [[nodiscard]] Vector with_loose_directions(const CentreWalls& walls, std::span<const Role> roles, const Vector& rest,
                                              const Vector& balanced, std::optional<std::size_t> left_out);
-  [[nodiscard]] bool clear(std::span<const std::size_t> walls, const Matrix& along, Vector& c) const;
   [[nodiscard]] bool clear_all_but(std::optional<std::size_t> left_out, const CentreWalls& walls,
                                    std::span<const Role> roles, Vector& c);
   [[nodiscard]] double across_held(std::size_t i) const;
@@ -120,10 +120,9 @@ class FreeCentre {
   double prescribed_ = 0.0;     ///< sum of the magnitudes of prescribed forces
   // Work space, kept so that integrating allocates no memory.
   std::vector<double> overlaps_;
-  std::vector<double> gone_in_;              ///< overlaps with the centre at its initial position
   std::vector<char> bears_;                  ///< whether a contact bears, as held_directions() has found last
   Matrix held_directions_ = Matrix::Zero();  ///< last result of held_directions()
-  std::vector<std::size_t> to_clear_;
+  std::vector<Obstacle> to_clear_;
 };
 
 }  // namespace monograin::contacts

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "elastic/nonlocal_contacts.hpp"
+#include "elastic/nonlocal_equilibrium.hpp"
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
 #include "support/refusal.hpp"
@@ -87,6 +88,42 @@ inline std::vector<ContactClass> turned(std::vector<ContactClass> classes, const
   return classes;
 }
 
+/// Cases with one column group per wall.
+struct SingleWalls {
+  std::vector<std::string> names;
+  std::vector<Eigen::Vector3d> normals;
+
+  [[nodiscard]] std::vector<ContactClass> classes() const {
+    std::vector<ContactClass> list;
+    for (std::size_t i = 0; i < names.size(); ++i) list.push_back({.name = names[i], .normals = {normals[i]}});
+    return list;
+  }
+};
+
+inline SingleWalls trigonal_walls() {
+  SingleWalls walls{.names = {"z+", "z-", "l0", "l120", "l240"},
+                    .normals = {Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitZ()}};
+  for (const double degrees : {0.0, 120.0, 240.0})
+    walls.normals.emplace_back(std::cos(degrees * k_degree), std::sin(degrees * k_degree), 0.0);
+  return walls;
+}
+
+struct Scene {
+  const char* name;
+  std::vector<ContactClass> classes;
+  Centre centre;
+  double poisson_ratio;
+  std::vector<double> displacements;
+};
+
+inline std::vector<Scene> scenes() {
+  return {{"die", die(), Centre::fixed, k_rubber, {0.35, 0.02}},
+          {"die with open walls", single_walls(die()), Centre::free, k_rubber, {0.2, 0.2, 0.01, 0.03, -0.1, -0.1}},
+          {"oblique die", oblique_die(), Centre::fixed, 0.3, {0.2, 0.01, 0.0, -0.01}},
+          {"close walls", oblique_die(20.0, 4), Centre::fixed, k_rubber, {0.3, 0.01, 0.01, 0.0}},
+          {"trigonal", trigonal_walls().classes(), Centre::free, 0.4, {0.15, 0.13, 0.0, 0.04, -0.01}}};
+}
+
 /// Constant displacements, or forces.
 inline std::vector<Ramp> held(std::span<const double> values, Control control = Control::displacement) {
   std::vector<Ramp> ramps;
@@ -108,11 +145,16 @@ inline std::vector<ContactState> states_of(Contacts& contacts, std::span<const d
   return states;
 }
 
+/// Moves a state to the equilibrium at an instant of a step.
+inline void solve(Contacts& contacts, std::span<const Ramp> ramps, double xi, std::span<double> y) {
+  EquilibriumSearch(contacts).solve(contacts, ramps, xi, y);
+}
+
 /// State under displacements, found from the unloaded one.
 inline std::vector<double> state_under(Contacts& contacts, std::span<const double> displacements) {
   std::vector<double> y(contacts.unknown_count(), 0.0);
   for (std::size_t j = 0; j < displacements.size(); ++j) y[j] = std::min(displacements[j], 0.0);
-  contacts.solve(held(displacements), 1.0, y);
+  solve(contacts, held(displacements), 1.0, y);
   return y;
 }
 

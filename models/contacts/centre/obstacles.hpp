@@ -1,0 +1,42 @@
+/// Walls that the centre of an unloaded particle evades.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+
+namespace monograin::contacts {
+
+/// A class of walls that the particle must not overlap.
+struct Obstacle {
+  std::size_t index;    ///< of the class
+  Eigen::Vector3d arm;  ///< mean normal along the free directions of the centre
+  double displacement;  ///< overlap with the centre at its initial position; negative for a gap
+
+  [[nodiscard]] double overlap(const Eigen::Vector3d& c) const { return displacement + arm.dot(c); }
+};
+
+/// Moves the centre by the smallest displacement after which it clears all walls. Takes the walls in turn: a wall that
+/// still overlaps becomes a constraint, in whose plane the walls before it are solved again.
+/// @param along     projector on the directions in which the centre may move
+/// @param least     component of a mean normal along these directions that counts
+/// @param overlaps  (wall, position of the centre) -> whether they overlap by more than round-off
+/// @return false, with c unchanged, if there is no such position
+template <class Overlaps>
+bool clear(std::span<const Obstacle> walls, const Eigen::Matrix3d& along, double least, const Overlaps& overlaps,
+           Eigen::Vector3d& c) {
+  Eigen::Vector3d now = c;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const Obstacle& wall = walls[k];
+    if (!overlaps(wall, now)) continue;
+    const Eigen::Vector3d path = along * wall.arm;
+    const double share = path.squaredNorm();
+    if (!(share > least * least)) return false;
+    now = c - path * (wall.overlap(c) / share);
+    if (!clear(walls.first(k), along - path * path.transpose() / share, least, overlaps, now)) return false;
+  }
+  c = now;
+  return true;
+}
+
+}  // namespace monograin::contacts
