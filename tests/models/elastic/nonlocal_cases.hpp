@@ -15,6 +15,7 @@
 
 #include "elastic/nonlocal_contacts.hpp"
 #include "elastic/nonlocal_equilibrium.hpp"
+#include "elastic/nonlocal_setup.hpp"
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
 #include "support/refusal.hpp"
@@ -156,6 +157,15 @@ inline std::vector<double> state_under(Contacts& contacts, std::span<const doubl
   for (std::size_t j = 0; j < displacements.size(); ++j) y[j] = std::min(displacements[j], 0.0);
   solve(contacts, held(displacements), 1.0, y);
   return y;
+}
+
+/// Settings of a sphere of radius 1 and Young's modulus 1.
+inline Settings unit_settings(Centre centre = Centre::fixed) {
+  return {.model = {.poisson_ratio = k_rubber},
+          .initial_radius = 1.0,
+          .youngs_modulus = 1.0,
+          .centre = centre,
+          .largest_displacement = 0.3};
 }
 
 }  // namespace monograin::nonlocal
