@@ -89,9 +89,9 @@ double Contacts::lift(std::size_t j, std::span<const double> forces, std::span<c
   return sum;
 }
 
-double Contacts::net_force(std::size_t direction, std::span<const double> forces) const noexcept {
-  double sum = 0.0;
-  for (std::size_t j = 0; j < class_count(); ++j) sum += weights_[j] * forces[j] * arms_[j][as_index(direction)];
+Eigen::Vector3d Contacts::net_force(std::span<const double> forces) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t j = 0; j < class_count(); ++j) sum += weights_[j] * forces[j] * arms_[j];
   return sum;
 }
 

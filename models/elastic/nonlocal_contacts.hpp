@@ -21,6 +21,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -118,8 +119,12 @@ class Contacts {
   [[nodiscard]] double lift_by_forces(std::size_t j, std::span<const double> forces) const noexcept;
   /// Approach that the displacement of the centre and the forces on all walls add to that of a wall.
   [[nodiscard]] double lift(std::size_t j, std::span<const double> forces, std::span<const double> y) const noexcept;
-  /// Sum of the forces on all walls along a free direction.
-  [[nodiscard]] double net_force(std::size_t direction, std::span<const double> forces) const noexcept;
+  /// Sum of the forces on all walls along the free directions.
+  [[nodiscard]] Eigen::Vector3d net_force(std::span<const double> forces) const;
+  /// Writes the displacement of the centre, or its rate, to a state.
+  void set_centre(const Eigen::Vector3d& centre, std::span<double> y) const {
+    std::copy_n(centre.begin(), free_count(), y.begin() + static_cast<std::ptrdiff_t>(class_count()));
+  }
 
   /// The margin, the smallest eigenvalue of M over all walls, whatever their control. Includes modes that break the
   /// symmetry of the classes if negative couplings may make those critical first.

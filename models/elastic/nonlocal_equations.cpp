@@ -42,7 +42,7 @@ void residual(Contacts& contacts, std::span<const Ramp> ramps, double xi, std::s
     residual[j] =
         goal.is_force ? y[j] - goal.signed_square : at.local[j].approach - goal.value - contacts.lift(j, at.forces, y);
   }
-  for (std::size_t k = 0; k < contacts.free_count(); ++k) residual[n + k] = contacts.net_force(k, at.forces);
+  if (contacts.free_count() > 0) contacts.set_centre(contacts.net_force(at.forces), residual);
 }
 
 void jacobian(Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y, Eigen::MatrixXd& jacobian) {

@@ -34,10 +34,7 @@ bool is_balanced_but_for_rounding(Contacts& contacts, std::span<const double> y)
     unresolved += contacts.weight(j) *
                   (contacts.composite_modulus() * contacts.law().at(rounding).force + at.stiffness[j] * rounding);
   }
-  for (std::size_t k = 0; k < contacts.free_count(); ++k) {
-    if (std::abs(contacts.net_force(k, at.forces)) > unresolved) return false;
-  }
-  return true;
+  return !(contacts.net_force(at.forces).array().abs() > unresolved).any();
 }
 
 }  // namespace
@@ -96,9 +93,7 @@ void EquilibriumSearch::approach_in_steps(Contacts& contacts, std::span<double> 
   if (!(pivot > 0.0)) throw DomainError({Limit::applicability, -1, "pivot", pivot});
   std::ranges::copy(y, state_.begin());
   set_targets_of(contacts, y, targets_, starts_);
-  Eigen::Vector3d imbalance = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < contacts.free_count(); ++k)
-    imbalance[as_index(k)] = contacts.net_force(k, contacts.evaluate(y).forces);
+  const Eigen::Vector3d imbalance = contacts.net_force(contacts.evaluate(y).forces);
 
   double done = 0.0;
   double step = 0.5;
@@ -159,7 +154,7 @@ bool EquilibriumSearch::sink_to_balance(Contacts& contacts, std::span<double> y)
   }
   const auto net_at = [&](const Eigen::Vector3d& place) -> std::optional<Eigen::Vector3d> {
     std::ranges::copy(state_, trial_.begin());
-    std::copy_n(place.begin(), contacts.free_count(), trial_.begin() + static_cast<std::ptrdiff_t>(targets_.size()));
+    contacts.set_centre(place, trial_);
     if (!newton_.solve(contacts, {.targets = targets_, .holds_centre = true}, trial_)) return std::nullopt;
     return newton_.net_force(contacts);
   };

@@ -37,7 +37,7 @@ bool release_centre(std::span<const contacts::Obstacle> walls, const Eigen::Matr
 void put_centre(const Contacts& contacts, std::span<const contacts::Obstacle> walls, const Eigen::Vector3d& centre,
                 std::span<double> y) {
   for (const contacts::Obstacle& wall : walls) y[wall.index] = std::min(free_approach(wall, centre), 0.0);
-  std::copy_n(centre.begin(), contacts.free_count(), y.begin() + static_cast<std::ptrdiff_t>(contacts.class_count()));
+  contacts.set_centre(centre, y);
 }
 
 }  // namespace monograin::nonlocal

@@ -41,9 +41,7 @@ bool is_balanced(Contacts& contacts, std::span<const Target> targets, std::span<
   const Evaluation& at = contacts.evaluate(y);
   double sum = 0.0;
   for (std::size_t j = 0; j < targets.size(); ++j) sum += contacts.weight(j) * at.forces[j];
-  for (std::size_t k = 0; k < contacts.free_count(); ++k) {
-    if (std::abs(contacts.net_force(k, at.forces)) > k_balance * sum) return false;
-  }
+  if ((contacts.net_force(at.forces).array().abs() > k_balance * sum).any()) return false;
   return unborne_force(contacts, targets, at.stiffness) == 0.0;
 }
 
@@ -106,22 +104,11 @@ bool Newton::lend_stiffness(const Contacts& contacts, std::span<const Target> ta
   return true;
 }
 
-Eigen::Vector3d Newton::net_force(const Contacts& contacts) const noexcept {
-  Eigen::Vector3d net = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < contacts.free_count(); ++k) net[as_index(k)] = contacts.net_force(k, at_.forces);
-  return net;
-}
-
 /// Net force on the centre after the corrections of the approaches, to first order, less the imbalance that may remain.
 Eigen::Vector3d Newton::corrected_net_force(const Contacts& contacts, const Goal& goal) {
-  Eigen::Vector3d sum = -goal.imbalance;
-  for (std::size_t k = 0; k < contacts.free_count(); ++k) {
-    double& along = sum[as_index(k)];
-    along += contacts.net_force(k, at_.forces);
-    for (std::size_t j = 0; j < goal.targets.size(); ++j) {
-      along += contacts.weight(j) * contacts.arm(j)[as_index(k)] * at_.stiffness[j] * tangent_.approach(j);
-    }
-  }
+  Eigen::Vector3d sum = -goal.imbalance + net_force(contacts);
+  for (std::size_t j = 0; j < goal.targets.size(); ++j)
+    sum += contacts.weight(j) * contacts.arm(j) * at_.stiffness[j] * tangent_.approach(j);
   return sum;
 }
 

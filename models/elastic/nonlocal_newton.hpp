@@ -36,7 +36,7 @@ class Newton {
   /// @return true if y is the solution
   [[nodiscard]] bool solve(const Contacts& contacts, const Goal& goal, std::span<double> y);
   /// Net force on the centre before the last correction.
-  [[nodiscard]] Eigen::Vector3d net_force(const Contacts& contacts) const noexcept;
+  [[nodiscard]] Eigen::Vector3d net_force(const Contacts& contacts) const { return contacts.net_force(at_.forces); }
   /// Displacement of the centre that cancels a net force, to first order about the state before the last correction.
   [[nodiscard]] Eigen::Vector3d step_to_balance(const Contacts& contacts, const Eigen::Vector3d& net_force) const {
     return tangent_.step_to_balance(contacts, at_.stiffness, net_force);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "contacts/columns.hpp"
 #include "elastic/nonlocal_system.hpp"
 
 namespace monograin::nonlocal {
@@ -41,7 +42,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < p.contacts().free_count(); ++k)
       centre += p.contacts().free_directions().col(as_index(k)) * p.state()[classes_.size() + k];
-    for (const double x : centre) *out++ = x * length;
+    contacts::write_centre_columns(centre * length, values);
   }
 }
 

@@ -91,7 +91,7 @@ bool Rates::find_unloaded(const Contacts& contacts, std::span<const Ramp> ramps,
   }
   for (const contacts::Obstacle& wall : obstacles_)
     dy[wall.index] = std::min(dy[wall.index], closing(y[wall.index], tolerances.touch));
-  std::copy_n(velocity.begin(), contacts.free_count(), dy.begin() + static_cast<std::ptrdiff_t>(n));
+  contacts.set_centre(velocity, dy);
   return true;
 }
 

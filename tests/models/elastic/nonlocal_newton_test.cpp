@@ -57,8 +57,7 @@ TEST(NonlocalNewton, LeavesAnImbalanceThatIsAskedFor) {
   const Eigen::Vector3d imbalance(1e-4, -2e-4, 3e-4);
   Newton newton(contacts);
   ASSERT_TRUE(newton.solve(contacts, {.targets = targets, .is_to_balance = false, .imbalance = imbalance}, y));
-  const auto forces = contacts.evaluate(y).forces;
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(contacts.net_force(k, forces), imbalance[as_index(k)], 1e-15);
+  EXPECT_LE((contacts.net_force(contacts.evaluate(y).forces) - imbalance).norm(), 1e-15);
   EXPECT_FALSE(is_balanced(contacts, targets, y));
 }
 
