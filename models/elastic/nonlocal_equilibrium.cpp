@@ -50,9 +50,6 @@ void EquilibriumSearch::solve(Contacts& contacts, std::span<const Ramp> ramps, d
   // Idle walls may move the centre to several positions, of which Newton's method does not choose the nearest.
   if (is_own_mode && centre_.follow(contacts, targets_, y)) return;
   std::ranges::copy(y, trial_.begin());
-  for (std::size_t j = 0; j < targets_.size(); ++j) {
-    if (targets_[j].is_force) trial_[j] = targets_[j].signed_square;
-  }
   if (newton_.solve(contacts, {.targets = targets_}, trial_) && !has_left_branch(contacts, targets_, trial_) &&
       is_balanced(contacts, targets_, trial_)) {
     std::ranges::copy(trial_, y.begin());

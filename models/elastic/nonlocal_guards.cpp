@@ -18,6 +18,7 @@ constexpr double k_opposite = 1e-9;
 // Difference of angles that is round-off [rad].
 constexpr double k_same_angle = 1e-9;
 
+int as_int(std::size_t index) noexcept { return static_cast<int>(index); }
 std::size_t index_of(const Guard& guard) noexcept { return static_cast<std::size_t>(std::max(0, guard.index)); }
 
 /// Angles at which walls of two classes may meet on the surface, each listed once.
@@ -70,8 +71,8 @@ const Pair& GuardSet::impinge(std::size_t pair) noexcept {
   return pairs_[pair];
 }
 
-void GuardSet::add(int kind, std::size_t index, int direction, std::string_view name) {
-  list_.push_back({kind, static_cast<int>(index), direction, name});
+Guard& GuardSet::add(int kind, int index, int direction, std::string_view name) {
+  return list_.emplace_back(Guard{kind, index, direction, name});
 }
 
 void GuardSet::arm(Particle& p) {
@@ -91,14 +92,10 @@ void GuardSet::arm_contacts(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.is_loaded(i)) continue;
     if (!p.mode.is_closed[i])
-      add(k_made, i, 1, "contact-made");
+      add(k_made, as_int(i), 1, "contact-made");
     else
       // The other contacts depend on this contact's force, whose second derivative is infinite where contact is lost.
-      list_.push_back({.kind = k_lost,
-                       .index = static_cast<int>(i),
-                       .direction = -1,
-                       .name = "contact-lost",
-                       .is_branch_end = true});
+      add(k_lost, as_int(i), -1, "contact-lost").is_branch_end = true;
   }
 }
 
@@ -106,12 +103,9 @@ void GuardSet::arm_contacts(const Particle& p) {
 void GuardSet::arm_carriers(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.is_loaded(i) || p.mode.is_closed[i]) continue;
-    const bool touches = p.mode.touches[i];
-    list_.push_back({.kind = touches ? k_left : k_touched,
-                     .index = static_cast<int>(i),
-                     .direction = touches ? -1 : 1,
-                     .name = touches ? "wall-left" : "wall-touched",
-                     .is_silent = true});
+    Guard& guard =
+        p.mode.touches[i] ? add(k_left, as_int(i), -1, "wall-left") : add(k_touched, as_int(i), 1, "wall-touched");
+    guard.is_silent = true;
   }
 }
 
@@ -119,7 +113,7 @@ void GuardSet::arm_carriers(const Particle& p) {
 void GuardSet::arm_impingement(const Particle& p) {
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const bool both = p.mode.is_closed[pairs_[k].first] && p.mode.is_closed[pairs_[k].second];
-    if (both && !pairs_[k].has_impinged) add(k_impingement, k, -1, "impingement");
+    if (both && !pairs_[k].has_impinged) add(k_impingement, as_int(k), -1, "impingement");
   }
 }
 
@@ -127,12 +121,8 @@ void GuardSet::arm_impingement(const Particle& p) {
 void GuardSet::arm_ends_of_forces(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!p.is_loaded(i) || p.end_of_force(i) == k_nowhere) continue;
-    list_.push_back({.kind = k_force_ends,
-                     .index = static_cast<int>(i),
-                     .direction = -1,
-                     .name = "force-ends",
-                     .is_silent = true,
-                     .is_exact = true});
+    Guard& guard = add(k_force_ends, as_int(i), -1, "force-ends");
+    guard.is_silent = guard.is_exact = true;
   }
 }
 
@@ -140,16 +130,16 @@ void GuardSet::arm_ends_of_forces(const Particle& p) {
 void GuardSet::arm_limits(Particle& p) {
   // The formulation stiffens before it reaches its limit, so that the limit needs no guard until then.
   const bool will_stiffen = !has_stiffened_ && p.contacts().least_pivot(p.state(), k_stiff_margin) > 0.0;
-  if (!has_stiffened_) list_.push_back({k_stiffening, -1, -1, "stiffening"});
+  if (!has_stiffened_) add(k_stiffening, -1, -1, "stiffening");
   const Settings& settings = p.settings();
   const bool needs_radius = settings.radius_rule != RadiusRule::none || settings.model.terms == Terms::all;
   for (std::size_t i = 0; needs_radius && i < p.size(); ++i) {
-    if (p.mode.is_closed[i]) add(k_radius, i, -1, "radius-limit");
+    if (p.mode.is_closed[i]) add(k_radius, as_int(i), -1, "radius-limit");
   }
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.mode.is_closed[i]) add(k_centre, i, -1, "limit");
+    if (p.mode.is_closed[i]) add(k_centre, as_int(i), -1, "limit");
   }
-  if (!will_stiffen) list_.push_back({k_limit, -1, -1, "limit"});
+  if (!will_stiffen) add(k_limit, -1, -1, "limit");
 }
 
 /// Angle that two contacts leave free between their edges; 0 where they meet.

@@ -65,7 +65,7 @@ class GuardSet {
   [[nodiscard]] std::optional<DomainEnd> limit_at_start(Particle& p, std::span<const double> y) const;
 
  private:
-  void add(int kind, std::size_t index, int direction, std::string_view name);
+  Guard& add(int kind, int index, int direction, std::string_view name);
   void arm_contacts(const Particle& p);
   void arm_carriers(const Particle& p);
   void arm_impingement(const Particle& p);

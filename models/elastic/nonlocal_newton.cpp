@@ -67,7 +67,7 @@ Newton::Search Newton::begin(const Contacts& contacts, const Goal& goal, std::sp
 }
 
 /// Evaluates contacts, forces and stiffnesses of a trial, and the misfits of their approaches. A contact under a force
-/// takes the depth of that force and gives way: its stiffness is 0.
+/// takes the depth of that force; its wall follows the surface, so that its stiffness is 0.
 /// @return false for a contact beyond the end of the law
 bool Newton::evaluate(const Contacts& contacts, std::span<const Target> targets, std::span<double> y) {
   for (std::size_t j = 0; j < targets.size(); ++j) {

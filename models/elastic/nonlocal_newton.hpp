@@ -43,7 +43,7 @@ class Newton {
   }
 
  private:
-  /// What is known before the first correction.
+  /// Knowledge of a search before its first correction.
   struct Search {
     bool moves_centre = false;
     bool is_first_touch = false;   ///< no contact shows yet that it supports a free centre

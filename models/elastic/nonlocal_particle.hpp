@@ -28,7 +28,7 @@ inline constexpr double k_end_of_force = 1e-8;
 inline constexpr double k_just_lost = 2.0;
 inline constexpr double k_nowhere = std::numeric_limits<double>::infinity();
 
-/// What holds of the classes between two transitions.
+/// State of the classes between two transitions.
 struct Mode {
   std::vector<char> is_closed;  ///< in contact
   std::vector<char> touches;    ///< wall may move a free centre; if open, until its gap exceeds Scales::idle

@@ -75,14 +75,12 @@ bool Rates::find_unloaded(const Contacts& contacts, std::span<const Ramp> ramps,
                           std::span<double> dy, const Tolerances& tolerances) {
   const std::size_t n = contacts.class_count();
   if (contacts.free_count() == 0) return false;
-  const auto is_in_reach = [&](std::size_t j) {
-    return !takes_force(ramps[j]) && (tolerances.touches.empty() || tolerances.touches[j]);
-  };
   obstacles_.clear();
   for (std::size_t j = 0; j < n; ++j) {
     if (y[j] > 0.0 || (takes_force(ramps[j]) && slope_of(ramps[j]) != 0.0)) return false;
     const double rate = slope_of(ramps[j]) - closing(y[j], tolerances.touch);
-    if (is_in_reach(j) && std::isfinite(rate)) obstacles_.push_back({j, contacts.arm(j), rate});
+    if (!takes_force(ramps[j]) && tolerances.may_push(j) && std::isfinite(rate))
+      obstacles_.push_back({j, contacts.arm(j), rate});
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(obstacles_, Eigen::Matrix3d::Identity(), velocity)) return false;
@@ -176,13 +174,11 @@ double Rates::reach_of_support(const Contacts& contacts, std::span<const Ramp> r
 void Rates::let_idle_walls_push(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
                                 std::span<double> dy, const Tolerances& tolerances) {
   const std::size_t n = contacts.class_count();
-  const auto pushes = [&](std::size_t j) {
-    return support_.is_redundant(j) && !takes_force(ramps[j]) && (tolerances.touches.empty() || tolerances.touches[j]);
-  };
   obstacles_.clear();
   for (std::size_t j = 0; j < n; ++j) {
     const double rate = tangent_.approach(j) - closing(y[j], tolerances.touch);
-    if (pushes(j) && std::isfinite(rate)) obstacles_.push_back({j, contacts.arm(j), rate});
+    const bool pushes = support_.is_redundant(j) && !takes_force(ramps[j]) && tolerances.may_push(j);
+    if (pushes && std::isfinite(rate)) obstacles_.push_back({j, contacts.arm(j), rate});
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(obstacles_, support_.unheld_directions(contacts), velocity)) return;

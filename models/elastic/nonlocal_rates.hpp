@@ -18,6 +18,8 @@ struct Tolerances {
   double touch = 0.0;  ///< gap (minus s) up to which walls touch: they may support the centre at once
   double pull = 0.0;   ///< least decay rate of a balance error where contacts bear the centre against a force
   std::span<const char> touches{};  ///< classes whose idle walls may move the centre once they touch; empty: all
+
+  [[nodiscard]] bool may_push(std::size_t j) const noexcept { return touches.empty() || touches[j]; }
 };
 
 /// Owns its working memory, so that rates do not allocate. Two threads must not use one object at once.

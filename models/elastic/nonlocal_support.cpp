@@ -23,12 +23,12 @@ bool may_balance(const Contacts& contacts, std::span<const Target> targets, std:
     if (targets[j].is_force) largest = std::max(largest, push_of(j).norm());
   }
   std::vector<Eigen::Vector3d> others;
-  std::vector<Eigen::Vector3d> giving_way;
+  std::vector<Eigen::Vector3d> unloading;
   for (std::size_t j = 0; j < targets.size(); ++j) {
     const Eigen::Vector3d& arm = contacts.arm(j);
     if (targets[j].is_force || y[j] < -near || !(arm.norm() > k_same_surroundings)) continue;
     others.push_back(arm.normalized());
-    if (y[j] > 0.0) giving_way.push_back(-others.back());
+    if (y[j] > 0.0) unloading.push_back(-others.back());
   }
   const auto can_be_borne = [&](bool is_small) {
     Eigen::Vector3d push = Eigen::Vector3d::Zero();
@@ -41,7 +41,7 @@ bool may_balance(const Contacts& contacts, std::span<const Target> targets, std:
     return push.norm() <= k_resolved * sum || in_reaction_cone(push, others);
   };
   if (!can_be_borne(false)) return false;
-  others.insert(others.end(), giving_way.begin(), giving_way.end());
+  others.insert(others.end(), unloading.begin(), unloading.end());
   return can_be_borne(true);
 }
 

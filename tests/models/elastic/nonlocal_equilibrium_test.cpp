@@ -136,7 +136,7 @@ const SingleWalls k_die_walls{
     .normals = {Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX(),
                 -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), -Eigen::Vector3d::UnitY()}};
 
-TEST(NonlocalCurveWithGaps, AgreesWithThirtyDigitsOnTheWayAndBack) {
+TEST(NonlocalCurveWithGaps, AgreesWithThirtyDigitsForthAndBack) {
   const Table table = reference("die_gaps_unload_terms4");
   ASSERT_GT(table.row_count(), 70u);
   for (const Centre centre : {Centre::fixed, Centre::free}) {
@@ -268,14 +268,14 @@ TEST(NonlocalBranch, IsFoundFromFarAway) {
 TEST(NonlocalSymmetry, UnloadingRetracesLoading) {
   Contacts contacts({k_rubber, Terms::four}, oblique_die(8.0), Centre::fixed);
   std::vector<double> y(4, 0.0);
-  std::vector<std::vector<double>> way;
+  std::vector<std::vector<double>> path;
   for (int i = 0; i <= 90; ++i) {
     solve(contacts, compression(4, 0.005 * i), 1.0, y);
-    way.push_back(y);
+    path.push_back(y);
   }
   for (int i = 90; i >= 0; --i) {
     solve(contacts, compression(4, 0.005 * i), 1.0, y);
-    for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(y[j], way[static_cast<std::size_t>(i)][j], 1e-14);
+    for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(y[j], path[static_cast<std::size_t>(i)][j], 1e-14);
   }
 }
 
@@ -335,11 +335,11 @@ TEST(NonlocalSymmetry, AFreeCentreIsFoundAmongAnyWalls) {
     double sum = 0.0;
     const auto states = states_of(contacts, y);
     // A particle that escapes between distant walls goes far.
-    const double way = Eigen::Vector3d(y[6], y[7], y[8]).norm();
+    const double distance = Eigen::Vector3d(y[6], y[7], y[8]).norm();
     for (std::size_t j = 0; j < 6; ++j) {
       net += states[j].force * walls[j].normals[0];
       sum += states[j].force;
-      EXPECT_NEAR(states[j].displacement, displacements[j], 1e-15 * (1.0 + way));
+      EXPECT_NEAR(states[j].displacement, displacements[j], 1e-15 * (1.0 + distance));
     }
     if (sum > 0.0) ++held_count;
     EXPECT_LE(net.norm(), 1e-14 * sum) << "scene " << scene;
