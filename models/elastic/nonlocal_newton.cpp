@@ -69,11 +69,11 @@ Newton::Search Newton::begin(const Contacts& contacts, const Goal& goal, std::sp
 /// Evaluates contacts, forces and stiffnesses of a trial, and the misfits of their approaches. A contact under a force
 /// takes the depth of that force; its wall follows the surface, so that its stiffness is 0.
 /// @return false for a contact beyond the end of the law
-bool Newton::evaluate(const Contacts& contacts, std::span<const Target> targets, std::span<double> y) {
-  for (std::size_t j = 0; j < targets.size(); ++j) {
-    if (targets[j].is_force) {
-      y[j] = targets[j].signed_square;
-      at_.forces[j] = targets[j].value;
+bool Newton::evaluate(const Contacts& contacts, const Goal& goal, std::span<double> y) {
+  for (std::size_t j = 0; j < goal.targets.size(); ++j) {
+    if (goal.targets[j].is_force) {
+      y[j] = goal.targets[j].signed_square;
+      at_.forces[j] = goal.targets[j].value;
       at_.stiffness[j] = 0.0;
       at_.local[j].approach_slope = 1.0;
       continue;
@@ -81,9 +81,10 @@ bool Newton::evaluate(const Contacts& contacts, std::span<const Target> targets,
     if (!(y[j] < contacts.law().end())) return false;
     at_.set(j, contacts.law(), contacts.composite_modulus(), y[j]);
   }
-  for (std::size_t j = 0; j < targets.size(); ++j) {
-    tangent_.approach(j) =
-        targets[j].is_force ? 0.0 : targets[j].value + contacts.lift(j, at_.forces, y) - at_.local[j].approach;
+  for (std::size_t j = 0; j < goal.targets.size(); ++j) {
+    tangent_.approach(j) = goal.targets[j].is_force
+                               ? 0.0
+                               : goal.targets[j].value + contacts.lift(j, at_.forces, y) - at_.local[j].approach;
   }
   return true;
 }
@@ -92,14 +93,13 @@ bool Newton::evaluate(const Contacts& contacts, std::span<const Target> targets,
 /// centre. Only these walls can bear such a force; they get the stiffness that they would have under it.
 /// @param gap  up to which a wall counts as touching
 /// @return true if there is such a force
-bool Newton::lend_stiffness(const Contacts& contacts, std::span<const Target> targets, double gap,
-                            std::span<const double> y) {
-  const double force = unborne_force(contacts, targets, at_.stiffness);
+bool Newton::lend_stiffness(const Contacts& contacts, const Goal& goal, double gap, std::span<const double> y) {
+  const double force = unborne_force(contacts, goal.targets, at_.stiffness);
   if (force == 0.0) return false;
   const LocalLaw& law = contacts.law();
   const double square = law.signed_square_under(std::min(force / contacts.composite_modulus(), law.greatest_force()));
-  for (std::size_t j = 0; j < targets.size(); ++j) {
-    if (!targets[j].is_force && at_.stiffness[j] == 0.0 && y[j] >= -gap) at_.stiffness[j] = force / square;
+  for (std::size_t j = 0; j < goal.targets.size(); ++j) {
+    if (!goal.targets[j].is_force && at_.stiffness[j] == 0.0 && y[j] >= -gap) at_.stiffness[j] = force / square;
   }
   return true;
 }
@@ -113,11 +113,11 @@ Eigen::Vector3d Newton::corrected_net_force(const Contacts& contacts, const Goal
 }
 
 /// Gives touching walls without stiffness that of contacts under the greatest force.
-void Newton::stiffen_touching(const Contacts& contacts, std::span<const Target> targets, const Search& search,
+void Newton::stiffen_touching(const Contacts& contacts, const Goal& goal, const Search& search,
                               std::span<const double> y) {
-  for (std::size_t j = 0; j < targets.size(); ++j) {
-    if (targets[j].is_force || at_.stiffness[j] != 0.0) continue;
-    if (targets[j].value + contacts.arm(j).dot(contacts.centre_of(y)) >= -search.deepest)
+  for (std::size_t j = 0; j < goal.targets.size(); ++j) {
+    if (goal.targets[j].is_force || at_.stiffness[j] != 0.0) continue;
+    if (goal.targets[j].value + contacts.arm(j).dot(contacts.centre_of(y)) >= -search.deepest)
       at_.stiffness[j] = search.touch_stiffness;
   }
 }
@@ -127,7 +127,7 @@ void Newton::stiffen_touching(const Contacts& contacts, std::span<const Target> 
 void Newton::balance_centre(const Contacts& contacts, const Goal& goal, const Search& search, bool may_find_more,
                             std::span<double> y) {
   const auto centre = y.subspan(contacts.class_count());
-  if (carries_no_load(at_.stiffness)) stiffen_touching(contacts, goal.targets, search, y);
+  if (carries_no_load(at_.stiffness)) stiffen_touching(contacts, goal, search, y);
   const Eigen::Vector3d unbalanced = corrected_net_force(contacts, goal);
   tangent_.move_centre(contacts, at_.stiffness, unbalanced, centre);
   if (!may_find_more) return;
@@ -136,15 +136,15 @@ void Newton::balance_centre(const Contacts& contacts, const Goal& goal, const Se
   const Eigen::Matrix3d projector = directions_of_nothing(contacts, [this](std::size_t j) { return at_.stiffness[j]; });
   if (!((projector * unbalanced).norm() > k_balance * borne)) return;
   const Eigen::Vector3d rest = corrected_net_force(contacts, goal);
-  stiffen_touching(contacts, goal.targets, search, y);
+  stiffen_touching(contacts, goal, search, y);
   tangent_.move_centre(contacts, at_.stiffness, rest, centre);
 }
 
 /// Corrects the signed squares by the corrections found for the approaches.
-Newton::Correction Newton::correct_squares(std::span<const Target> targets, std::span<double> y) {
+Newton::Correction Newton::correct_squares(const Goal& goal, std::span<double> y) {
   Correction correction;
-  for (std::size_t j = 0; j < targets.size(); ++j) {
-    if (targets[j].is_force) continue;
+  for (std::size_t j = 0; j < goal.targets.size(); ++j) {
+    if (goal.targets[j].is_force) continue;
     const double step = tangent_.approach(j) / at_.local[j].approach_slope;
     y[j] += step;
     correction.largest = std::max(correction.largest, std::abs(step));
@@ -155,12 +155,12 @@ Newton::Correction Newton::correct_squares(std::span<const Target> targets, std:
 
 /// True for a correction that does not contract because it is round-off. Contacts that are shallow against the path of
 /// the centre carry the round-off of that path.
-bool Newton::is_rounding(const Contacts& contacts, std::span<const Target> targets, const Correction& correction,
+bool Newton::is_rounding(const Contacts& contacts, const Goal& goal, const Correction& correction,
                          std::span<const double> y) const {
   double length = 0.0;
-  for (std::size_t j = 0; j < targets.size(); ++j) {
-    if (targets[j].is_force) continue;
-    length = std::max({length, std::abs(targets[j].value), std::abs(contacts.lift(j, at_.forces, y))});
+  for (std::size_t j = 0; j < goal.targets.size(); ++j) {
+    if (goal.targets[j].is_force) continue;
+    length = std::max({length, std::abs(goal.targets[j].value), std::abs(contacts.lift(j, at_.forces, y))});
   }
   return correction.largest <= std::max(k_stagnation * correction.scale, k_resolved * length);
 }
@@ -170,18 +170,18 @@ bool Newton::solve(const Contacts& contacts, const Goal& goal, std::span<double>
   const bool may_lend = search.moves_centre && goal.is_to_balance && !search.is_first_touch;
   double last = 0.0;
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
-    if (!evaluate(contacts, goal.targets, y)) return false;
-    if (iteration == 0 && may_lend && lend_stiffness(contacts, goal.targets, k_touching * search.farthest, y)) {
+    if (!evaluate(contacts, goal, y)) return false;
+    if (iteration == 0 && may_lend && lend_stiffness(contacts, goal, k_touching * search.farthest, y)) {
       search.free_steps = k_first_touch_steps;
     }
     if (!tangent_.eliminate(contacts, at_.stiffness)) return false;
     const bool is_free_step = iteration < search.free_steps;
     if (search.moves_centre) balance_centre(contacts, goal, search, search.is_first_touch && is_free_step, y);
-    const Correction correction = correct_squares(goal.targets, y);
+    const Correction correction = correct_squares(goal, y);
     // The remaining error is at most one further contraction of this correction.
     const double contraction = iteration > 0 ? std::min(correction.largest / last, 1.0) : 1.0;
     if (correction.largest * contraction <= k_resolved * correction.scale) return true;
-    if (!is_free_step && contraction > k_contraction) return is_rounding(contacts, goal.targets, correction, y);
+    if (!is_free_step && contraction > k_contraction) return is_rounding(contacts, goal, correction, y);
     last = correction.largest;
   }
   return false;

@@ -60,17 +60,15 @@ class Newton {
   };
 
   [[nodiscard]] static Search begin(const Contacts& contacts, const Goal& goal, std::span<const double> y);
-  [[nodiscard]] bool evaluate(const Contacts& contacts, std::span<const Target> targets, std::span<double> y);
-  [[nodiscard]] bool lend_stiffness(const Contacts& contacts, std::span<const Target> targets, double gap,
-                                    std::span<const double> y);
+  [[nodiscard]] bool evaluate(const Contacts& contacts, const Goal& goal, std::span<double> y);
+  [[nodiscard]] bool lend_stiffness(const Contacts& contacts, const Goal& goal, double gap, std::span<const double> y);
   [[nodiscard]] Eigen::Vector3d corrected_net_force(const Contacts& contacts, const Goal& goal);
-  void stiffen_touching(const Contacts& contacts, std::span<const Target> targets, const Search& search,
-                        std::span<const double> y);
+  void stiffen_touching(const Contacts& contacts, const Goal& goal, const Search& search, std::span<const double> y);
   void balance_centre(const Contacts& contacts, const Goal& goal, const Search& search, bool may_find_more,
                       std::span<double> y);
-  [[nodiscard]] Correction correct_squares(std::span<const Target> targets, std::span<double> y);
-  [[nodiscard]] bool is_rounding(const Contacts& contacts, std::span<const Target> targets,
-                                 const Correction& correction, std::span<const double> y) const;
+  [[nodiscard]] Correction correct_squares(const Goal& goal, std::span<double> y);
+  [[nodiscard]] bool is_rounding(const Contacts& contacts, const Goal& goal, const Correction& correction,
+                                 std::span<const double> y) const;
 
   Tangent tangent_;
   Evaluation at_;

@@ -44,7 +44,7 @@ Rates::Rates(const Contacts& contacts) : tangent_(contacts), support_(contacts),
 void Rates::find(Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y, std::span<double> dy,
                  const Tolerances& tolerances) {
   const std::size_t n = contacts.class_count();
-  if (find_unloaded(contacts, ramps, y, dy, tolerances)) return;
+  if (find_unloaded(contacts, {ramps, y, {}, tolerances}, dy)) return;
   const Evaluation& at = contacts.evaluate(y);
   contacts.forget();
   // Loads of redundant walls are integration errors: two such walls would hold the centre in their corner.
@@ -58,7 +58,7 @@ void Rates::find(Contacts& contacts, std::span<const Ramp> ramps, std::span<cons
   if (!tangent_.eliminate(contacts, stiffness_)) {
     throw DomainError({Limit::applicability, -1, "margin", contacts.margin(y)});
   }
-  if (is_free) let_centre_follow(contacts, ramps, y, at.forces, dy, tolerances);
+  if (is_free) let_centre_follow(contacts, {ramps, y, at.forces, tolerances}, dy);
   for (std::size_t j = 0; j < n; ++j) {
     dy[j] = tangent_.approach(j) / at.local[j].approach_slope;
     if (takes_force(ramps[j])) {
@@ -71,24 +71,23 @@ void Rates::find(Contacts& contacts, std::span<const Ramp> ramps, std::span<cons
 /// Sets the rates if no contact is loaded and none begins to be: the centre evades the walls that touch, and no others.
 /// Gaps that are integration errors close gradually; if they did not count as touching, walls would leave in turns.
 /// @return false, with dy unchanged, in all other cases
-bool Rates::find_unloaded(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
-                          std::span<double> dy, const Tolerances& tolerances) {
+bool Rates::find_unloaded(const Contacts& contacts, const State& now, std::span<double> dy) {
   const std::size_t n = contacts.class_count();
   if (contacts.free_count() == 0) return false;
   obstacles_.clear();
   for (std::size_t j = 0; j < n; ++j) {
-    if (y[j] > 0.0 || (takes_force(ramps[j]) && slope_of(ramps[j]) != 0.0)) return false;
-    const double rate = slope_of(ramps[j]) - closing(y[j], tolerances.touch);
-    if (!takes_force(ramps[j]) && tolerances.may_push(j) && std::isfinite(rate))
+    if (now.y[j] > 0.0 || (takes_force(now.ramps[j]) && slope_of(now.ramps[j]) != 0.0)) return false;
+    const double rate = slope_of(now.ramps[j]) - closing(now.y[j], now.tolerances.touch);
+    if (!takes_force(now.ramps[j]) && now.tolerances.may_push(j) && std::isfinite(rate))
       obstacles_.push_back({j, contacts.arm(j), rate});
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(obstacles_, Eigen::Matrix3d::Identity(), velocity)) return false;
   for (std::size_t j = 0; j < n; ++j) {
-    dy[j] = takes_force(ramps[j]) ? 0.0 : free_approach({j, contacts.arm(j), slope_of(ramps[j])}, velocity);
+    dy[j] = takes_force(now.ramps[j]) ? 0.0 : free_approach({j, contacts.arm(j), slope_of(now.ramps[j])}, velocity);
   }
   for (const contacts::Obstacle& wall : obstacles_)
-    dy[wall.index] = std::min(dy[wall.index], closing(y[wall.index], tolerances.touch));
+    dy[wall.index] = std::min(dy[wall.index], closing(now.y[wall.index], now.tolerances.touch));
   contacts.set_centre(velocity, dy);
   return true;
 }
@@ -107,77 +106,73 @@ void Rates::set_approach_rates_of_walls(const Contacts& contacts, std::span<cons
 /// Adds the rates of a free centre: forces stay balanced, and touching walls move the centre where no contact supports
 /// it.
 /// @throws std::domain_error where nothing supports it against prescribed forces
-void Rates::let_centre_follow(Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
-                              std::span<const double> forces, std::span<double> dy, const Tolerances& tolerances) {
+void Rates::let_centre_follow(Contacts& contacts, const State& now, std::span<double> dy) {
   const std::size_t n = contacts.class_count();
   const bool is_first_touch = carries_no_load(stiffness_);
   for (std::size_t j = 0; is_first_touch && j < n; ++j) {
-    const bool is_touching = !takes_force(ramps[j]) && y[j] == 0.0 && tangent_.approach(j) >= 0.0;
+    const bool is_touching = !takes_force(now.ramps[j]) && now.y[j] == 0.0 && tangent_.approach(j) >= 0.0;
     if (is_touching && !support_.is_redundant(j)) stiffness_[j] = 1.0;
   }
-  const Eigen::Vector3d error = error_against_forces(contacts, ramps, y, forces, tolerances.touch);
+  const Eigen::Vector3d error = error_against_forces(contacts, now);
   Eigen::Vector3d net = Eigen::Vector3d::Zero();
   double pressing = 0.0;
   for (std::size_t j = 0; j < n; ++j) {
-    const double force_rate = takes_force(ramps[j]) ? slope_of(ramps[j]) : stiffness_[j] * tangent_.approach(j);
+    const double force_rate = takes_force(now.ramps[j]) ? slope_of(now.ramps[j]) : stiffness_[j] * tangent_.approach(j);
     net += contacts.weight(j) * force_rate * contacts.arm(j);
     // The tolerance is relative to all force rates that walls would cause, and to the forces where no rate is to
     // change.
-    pressing += contacts.weight(j) * (std::abs(force_rate) + tolerances.pull * forces[j]);
+    pressing += contacts.weight(j) * (std::abs(force_rate) + now.tolerances.pull * now.forces[j]);
   }
   const auto centre = dy.subspan(n);
   std::ranges::fill(centre, 0.0);
-  const double decay = error_decay(ramps, forces, tolerances.pull);
+  const double decay = error_decay(now.ramps, now.forces, now.tolerances.pull);
   tangent_.move_centre(contacts, stiffness_, net + decay * error, centre);
   // Only `pull` times the error counts. A faster decay of the error does not drive a centre that no contact supports.
   const Eigen::Matrix3d projector = directions_of_nothing(contacts, [this](std::size_t j) { return stiffness_[j]; });
-  const double left = (projector * (net + tolerances.pull * error)).norm();
-  if (support_.has_redundant_walls()) let_idle_walls_push(contacts, ramps, y, dy, tolerances);
+  const double left = (projector * (net + now.tolerances.pull * error)).norm();
+  if (support_.has_redundant_walls()) let_idle_walls_push(contacts, now, dy);
   if (left > k_balance * pressing &&
-      !support_.may_be_held(contacts, ramps, y, reach_of_support(contacts, ramps, y, tolerances.touch))) {
+      !support_.may_be_held(contacts, now.ramps, now.y, reach_of_support(contacts, now))) {
     throw DomainError(Limit::centre_driven_away);
   }
 }
 
 /// Net force on the centre that is integration error. Nonzero only if contacts bear the centre against a prescribed
 /// force: they end together with that force only if no error is left.
-Eigen::Vector3d Rates::error_against_forces(const Contacts& contacts, std::span<const Ramp> ramps,
-                                            std::span<const double> y, std::span<const double> forces,
-                                            double touch) const {
+Eigen::Vector3d Rates::error_against_forces(const Contacts& contacts, const State& now) const {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
   bool is_forced = false;
-  for (std::size_t j = 0; j < ramps.size(); ++j) is_forced = is_forced || (takes_force(ramps[j]) && y[j] > touch);
-  for (std::size_t j = 0; is_forced && j < ramps.size(); ++j) {
-    if (!support_.is_redundant(j)) error += contacts.weight(j) * forces[j] * contacts.arm(j);
+  for (std::size_t j = 0; j < now.ramps.size(); ++j)
+    is_forced = is_forced || (takes_force(now.ramps[j]) && now.y[j] > now.tolerances.touch);
+  for (std::size_t j = 0; is_forced && j < now.ramps.size(); ++j) {
+    if (!support_.is_redundant(j)) error += contacts.weight(j) * now.forces[j] * contacts.arm(j);
   }
   return error;
 }
 
 /// Gap up to which walls may bear forces that no contact bears. Touching walls support the centre at once, if they can
 /// bear. Where a force ends, walls as near as its contact is deep count, too: errors separate them just before.
-double Rates::reach_of_support(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
-                               double touch) const {
+double Rates::reach_of_support(const Contacts& contacts, const State& now) const {
   const Eigen::Matrix3d unheld = support_.unheld_directions(contacts);
-  double near = touch;
-  for (std::size_t j = 0; j < ramps.size(); ++j) {
+  double near = now.tolerances.touch;
+  for (std::size_t j = 0; j < now.ramps.size(); ++j) {
     // A force that contacts bear already, or that does not shrink, says nothing about the gaps of walls that may bear
     // others.
-    const bool is_shrinking = takes_force(ramps[j]) && slope_of(ramps[j]) < 0.0;
+    const bool is_shrinking = takes_force(now.ramps[j]) && slope_of(now.ramps[j]) < 0.0;
     const bool says_so = is_shrinking && (unheld * contacts.arm(j)).norm() > k_same_surroundings;
-    near = std::max(near, says_so ? y[j] : k_unloaded * y[j]);
+    near = std::max(near, says_so ? now.y[j] : k_unloaded * now.y[j]);
   }
   return near;
 }
 
 /// Adds to the rates the velocity that touching redundant walls give the centre. Gaps and overlaps that are integration
 /// errors close gradually; closed at once, these contacts would open and close in turns.
-void Rates::let_idle_walls_push(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
-                                std::span<double> dy, const Tolerances& tolerances) {
+void Rates::let_idle_walls_push(const Contacts& contacts, const State& now, std::span<double> dy) {
   const std::size_t n = contacts.class_count();
   obstacles_.clear();
   for (std::size_t j = 0; j < n; ++j) {
-    const double rate = tangent_.approach(j) - closing(y[j], tolerances.touch);
-    const bool pushes = support_.is_redundant(j) && !takes_force(ramps[j]) && tolerances.may_push(j);
+    const double rate = tangent_.approach(j) - closing(now.y[j], now.tolerances.touch);
+    const bool pushes = support_.is_redundant(j) && !takes_force(now.ramps[j]) && now.tolerances.may_push(j);
     if (pushes && std::isfinite(rate)) obstacles_.push_back({j, contacts.arm(j), rate});
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
@@ -186,7 +181,7 @@ void Rates::let_idle_walls_push(const Contacts& contacts, std::span<const Ramp> 
   for (std::size_t j = 0; j < n; ++j) {
     double& rate = tangent_.approach(j);
     if (next != obstacles_.end() && next->index == j)
-      rate = std::min(free_approach(*next++, velocity), 0.0) + closing(y[j], tolerances.touch);
+      rate = std::min(free_approach(*next++, velocity), 0.0) + closing(now.y[j], now.tolerances.touch);
     else
       rate += contacts.arm(j).dot(velocity);
   }

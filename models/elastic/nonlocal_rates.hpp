@@ -43,18 +43,20 @@ class Rates {
                             const Eigen::Vector3d& missing, std::span<double> balance);
 
  private:
-  [[nodiscard]] bool find_unloaded(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
-                                   std::span<double> dy, const Tolerances& tolerances);
+  /// A state, and what acts on it.
+  struct State {
+    std::span<const Ramp> ramps;
+    std::span<const double> y;
+    std::span<const double> forces;
+    const Tolerances& tolerances;
+  };
+
+  [[nodiscard]] bool find_unloaded(const Contacts& contacts, const State& now, std::span<double> dy);
   void set_approach_rates_of_walls(const Contacts& contacts, std::span<const Ramp> ramps);
-  void let_centre_follow(Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
-                         std::span<const double> forces, std::span<double> dy, const Tolerances& tolerances);
-  [[nodiscard]] Eigen::Vector3d error_against_forces(const Contacts& contacts, std::span<const Ramp> ramps,
-                                                     std::span<const double> y, std::span<const double> forces,
-                                                     double touch) const;
-  [[nodiscard]] double reach_of_support(const Contacts& contacts, std::span<const Ramp> ramps,
-                                        std::span<const double> y, double touch) const;
-  void let_idle_walls_push(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
-                           std::span<double> dy, const Tolerances& tolerances);
+  void let_centre_follow(Contacts& contacts, const State& now, std::span<double> dy);
+  [[nodiscard]] Eigen::Vector3d error_against_forces(const Contacts& contacts, const State& now) const;
+  [[nodiscard]] double reach_of_support(const Contacts& contacts, const State& now) const;
+  void let_idle_walls_push(const Contacts& contacts, const State& now, std::span<double> dy);
 
   Tangent tangent_;
   CentreSupport support_;
