@@ -66,6 +66,15 @@ Dent dent_of(const Material& material, double zeta) noexcept {
   return dent;
 }
 
+Coverage coverage_of(double Om) noexcept {
+  const double shade = 1.0 / (1.0 + k::kap * raised<4>(Om));
+  return {.Om = Om,
+          .m = 1.0 - k::m2 * Om * Om + k::m4 * raised<4>(Om),
+          .m_Om = -2.0 * k::m2 * Om + 4.0 * k::m4 * raised<3>(Om),
+          .shade = shade,
+          .shade_Om = -4.0 * k::kap * raised<3>(Om) * shade * shade};
+}
+
 Contact contact_by(const Material& material, const Dent& dent, double l, double m, double coordinate,
                    bool is_force) noexcept {
   const double rest = 1.0 - dent.q;

@@ -8,6 +8,13 @@
 
 namespace monograin::cel {
 
+template <int n>
+[[nodiscard]] constexpr double raised(double x) noexcept {
+  double result = 1.0;
+  for (int i = 0; i < n; ++i) result *= x;
+  return result;
+}
+
 /// Elastic constants and the onset of yield.
 struct Material {
   /// @param yield_stress   Y, > 0
@@ -48,6 +55,14 @@ struct Slopes {
   friend Slopes operator-(const Slopes& a, const Slopes& b) noexcept { return a + -1.0 * b; }
 };
 
+/// Coverage Om of the particle's surface, half the contact area over pi R0^2, and what depends on it alone.
+struct Coverage {
+  double Om = 0.0;
+  double m = 1.0, m_Om = 0.0;          ///< factor of force and area
+  double shade = 1.0, shade_Om = 0.0;  ///< factor of the influence of neighbours
+};
+[[nodiscard]] Coverage coverage_of(double Om) noexcept;
+
 /// A contact at an instant. An open one has u <= 0, minus its gap, and no force.
 struct Contact {
   double u = 0.0;      ///< elastic displacement
@@ -57,7 +72,7 @@ struct Contact {
   double H = 0.0;      ///< force at which the contact would flow by itself
   double F_over_H = 0.0;
   double stored = 0.0;  ///< elastic energy of the contact itself
-  Slopes u_by, F_by, H_by, alpha_by;
+  Slopes u_by{}, F_by{}, H_by{}, alpha_by{};
 };
 
 /// Contact by the law F = H (u/u_H)^(1/(1-q)), at an elastic displacement u or, with the inverse law, under a force.

@@ -1,4 +1,4 @@
-/// The equations of a coupled elastic-plastic particle at a state, and their derivatives.
+/// The equations of a coupled elastic-plastic particle at a state.
 ///
 /// Every contact presses a dent (contact_law.hpp) into a core, which yields as a whole by the deviator of its mean
 /// stress. Contacts act on each other through the elastic sphere, through the core, and through how much of the surface
@@ -17,217 +17,149 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "cel/centre.hpp"
 #include "cel/contact_law.hpp"
-#include "cel/core_shape.hpp"
-#include "contacts/centre/centre_lines.hpp"
+#include "cel/core.hpp"
+#include "cel/coupling.hpp"
 #include "contacts/wall_drive.hpp"
-#include "system/walls.hpp"
 
 namespace monograin::cel {
 
 /// Indices of the unknowns in a state: own coordinate and dent of every class, centre, core.
-class Layout {
- public:
-  /// @param shapes  number of shapes that the core can take; 0: the core keeps its shape, and is no unknown
-  Layout(std::size_t classes, std::size_t directions, std::size_t shapes) noexcept
-      : classes_(classes), directions_(directions), core_size_(shapes > 0 ? shapes + 1 : 0) {}
-  [[nodiscard]] std::size_t coordinate(std::size_t i) const noexcept { return i; }
-  [[nodiscard]] std::size_t dent(std::size_t i) const noexcept { return classes_ + i; }
-  [[nodiscard]] bool is_dent(std::size_t place) const noexcept { return place >= classes_ && place < 2 * classes_; }
-  [[nodiscard]] std::size_t centre(std::size_t k) const noexcept { return 2 * classes_ + k; }
-  /// First index of the core: the components of C - 1 (core_shape.hpp), then e.
-  [[nodiscard]] std::size_t core() const noexcept { return 2 * classes_ + directions_; }
-  [[nodiscard]] std::size_t size() const noexcept { return core() + core_size_; }
+struct Layout {
+  std::size_t classes = 0;
+  std::size_t directions = 0;  ///< of a free centre
+  std::size_t shapes = 0;      ///< of the core; 0: the core keeps its shape, and is no unknown
 
-  [[nodiscard]] std::size_t directions() const noexcept { return directions_; }
-  [[nodiscard]] bool has_core() const noexcept { return core_size_ > 0; }
+  [[nodiscard]] std::size_t dent(std::size_t i) const noexcept { return classes + i; }
+  [[nodiscard]] bool is_dent(std::size_t place) const noexcept { return place >= classes && place < 2 * classes; }
+  [[nodiscard]] std::size_t centre(std::size_t k) const noexcept { return 2 * classes + k; }
+  /// First index of the core: the components of C - 1 among its shapes, then e.
+  [[nodiscard]] std::size_t core() const noexcept { return 2 * classes + directions; }
+  [[nodiscard]] bool has_core() const noexcept { return shapes > 0; }
+  [[nodiscard]] std::size_t size() const noexcept { return core() + (has_core() ? shapes + 1 : 0); }
   /// Displacement of the centre along its free directions.
   [[nodiscard]] Eigen::Vector3d centre_of(std::span<const double> y) const noexcept {
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
-    std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(centre(0)), directions_, x.begin());
+    std::ranges::copy(y.subspan(centre(0), directions), x.begin());
     return x;
   }
-
- private:
-  std::size_t classes_, directions_, core_size_;
 };
 
-/// Shape of the core and its accumulated equivalent strain, or the rates of both.
-struct Core {
-  /// Metric, of determinant 1; the support distance along n is sqrt(n.C n).
-  Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
-  double e = 0.0;
-};
-
-/// State of one class of walls and of each of its contacts.
+/// One class of walls, and each of its contacts.
 struct ClassState {
   double count = 0.0;      ///< number of walls
   Eigen::Matrix3d wall;    ///< n n of the first wall
   Eigen::Matrix3d spread;  ///< sum of n n over all walls
 
   contacts::WallDrive drive{};
-  bool takes_force = false;  ///< the own coordinate is the force F, not u
-  bool gives_way = false;    ///< the wall bears no force: it rests until the surface meets it, then moves along
+  bool gives_way = false;  ///< the wall bears no force: it rests until the surface meets it, then moves along
   bool touches = false;
-  bool flows = false;    ///< the dent grows
-  bool may_flow = true;  ///< false: ruled out at the present instant
+  bool flows = false;  ///< the dent grows
 
+  // At the state that was evaluated.
   double coordinate = 0.0;
   Dent dent{};
-  Contact contact{};
+  double l = 1.0, per_l = 1.0;  ///< support distance of the core under the wall
   Advance advance{};
-  double l = 1.0, per_l = 1.0, l_by_flow = 0.0;
+  Contact contact{};
   double displacement = 0.0;  ///< displacement of the wall, by (K)
-  double f = -1.0;            ///< yield function
-  double X = 0.0;
-  double tau = 0.0;   ///< share of the wall in the load of the core
-  double b = 0.0;     ///< 1: carried by the flow of the core; 0: drives it
-  double wk = 1.0;    ///< factor by which a core that flows weakens a carried contact
+  Yield yield{};
   double pace = 0.0;  ///< Lam per rate of the dent, if the dent grows
 
+  /// True if the own coordinate is the force F, not u.
+  [[nodiscard]] bool takes_force() const noexcept { return drive.is_force_controlled(); }
+  /// Lets the wall rest at a displacement.
+  void hold(double at) { drive = contacts::WallDrive({at, at, Control::displacement}, 1.0); }
+  /// Displacement of the wall at the state that was evaluated; exact if it is prescribed.
+  [[nodiscard]] double position(double xi) const noexcept { return takes_force() ? displacement : drive.value(xi); }
   /// w = -c'(l)/l, load of the core per force: a force loads the core as far as it does work on the advance.
   [[nodiscard]] double w() const noexcept { return -advance.c_l * per_l; }
 };
 
 class Particle {
  public:
-  /// Stiffness (over E R0) of a weak spring at a free centre. It determines the centre where no contact is stiff.
-  static constexpr double k_weak_spring = 1e-9;
+  /// Elastic displacement, over the program's depth, that is round-off; more than the tolerance of a located guard.
+  static constexpr double k_touch = 4e-13;
 
-  Particle(const Material& material, double poisson_ratio, std::span<const ContactClass> classes, bool centre_is_free);
+  /// @param depth  largest displacement of the program
+  Particle(const Material& material, double poisson_ratio, std::span<const ContactClass> walls, bool centre_is_free,
+           double depth = 1.0);
 
   [[nodiscard]] const Material& material() const noexcept { return material_; }
+  [[nodiscard]] double depth() const noexcept { return depth_; }
   [[nodiscard]] const Layout& layout() const noexcept { return layout_; }
-  [[nodiscard]] std::size_t size() const noexcept { return classes_.size(); }
-  [[nodiscard]] ClassState& at(std::size_t i) noexcept { return classes_[i]; }
-  [[nodiscard]] const ClassState& at(std::size_t i) const noexcept { return classes_[i]; }
-  [[nodiscard]] std::span<ClassState> classes() noexcept { return classes_; }
-  [[nodiscard]] std::span<const ClassState> classes() const noexcept { return classes_; }
-  [[nodiscard]] bool any_flows() const noexcept { return std::ranges::any_of(classes_, &ClassState::flows); }
-  [[nodiscard]] const contacts::CentreLines& lines() const noexcept { return lines_; }
-  [[nodiscard]] Core core_of(std::span<const double> y) const noexcept;
-  /// n.x, by which a displacement of the centre deepens the contacts of a class.
-  [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const noexcept {
-    return lines_.arm(i).dot(layout_.centre_of(y));
+  [[nodiscard]] std::size_t size() const noexcept { return classes.size(); }
+  [[nodiscard]] bool any_flows() const noexcept { return std::ranges::any_of(classes, &ClassState::flows); }
+  [[nodiscard]] bool is_at_rest() const noexcept;
+  /// Elastic displacement up to which a contact is neither clearly open nor clearly closed.
+  [[nodiscard]] double slack(std::size_t i) const noexcept;
+  [[nodiscard]] const Coupling& coupling(std::size_t i, std::size_t j) const noexcept {
+    return couplings_[i * size() + j];
   }
-  /// Puts the rest position of the weak spring to where the centre is.
-  void rest_centre(std::span<const double> y) noexcept { rest_ = layout_.centre_of(y); }
+  [[nodiscard]] Core core_of(std::span<const double> y) const noexcept;
+  /// n.x, by which the displacement of the centre deepens the contacts of a class.
+  [[nodiscard]] double carried(std::size_t i) const noexcept { return centre.lines().arm(i).dot(x_); }
+  /// Lets a wall move with the surface and bear no force.
+  void give_way(std::size_t i, std::span<double> y);
+  /// Writes the prescribed forces into a state.
+  void prescribe(double xi, std::span<double> y) const noexcept;
 
-  /// Drops the cached evaluation. To be called when an own coordinate changes from u to F or back.
-  void forget() noexcept { is_known_ = false; }
-  /// Evaluates all equations at a state.
-  /// @return false if the cached evaluation is for that state
+  /// Drops the cached evaluation. To be called when a program or a mode changes.
+  void forget() noexcept { y_.clear(); }
+  /// Evaluates all equations at a state, unless the cached evaluation is for that state.
+  /// @param with_yield  false: leaves out the core's load and the yield functions, which elastic motion does not need
   /// @throws std::domain_error where the core or a dent has no size
-  bool evaluate(std::span<const double> y);
-  [[nodiscard]] double coverage() const noexcept { return Om_; }
+  void evaluate(std::span<const double> y, bool with_yield = true);
+  /// Chooses the equations (E) that suit the forces at the state that was evaluated.
+  void choose_balance();
+  /// Counts evaluations and choices of equations.
+  [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
+  [[nodiscard]] const Coverage& coverage() const noexcept { return coverage_; }
+  [[nodiscard]] const CoreLoad& load() const noexcept { return load_; }
   [[nodiscard]] double stored_energy() const noexcept { return stored_; }
-  /// Energy of the weak spring, which is no part of the law.
-  [[nodiscard]] double spring_energy() const noexcept { return 0.5 * k_weak_spring * (centre_ - rest_).squaredNorm(); }
+  /// Displacement of the centre along its free directions.
+  [[nodiscard]] const Eigen::Vector3d& position() const noexcept { return x_; }
   /// Residuals of (K) or of the prescribed force, of the yield functions of contacts that flow, and of (E), in the
   /// order of the unknowns up to the core.
   void residual(double xi, std::span<double> residual) const;
-  /// Writes the prescribed forces into a state.
-  void prescribe(double xi, std::span<double> y) const noexcept;
-  /// Corrects a state by Newton's method for given core and dents of contacts that do not flow.
-  /// @throws std::domain_error where there is no solution near the state
-  void solve(double xi, std::span<double> y);
-  /// Rates of all unknowns with the step coordinate at the state that was evaluated.
-  /// @param pull  rate at which dy also draws the state back to the equations; the functions below leave this part out
-  /// @return the margin to a fold: the speed of walls over the sum of that and the speed of their contacts; negative
-  /// beyond the fold, where the determinant of the equations has changed its sign
-  double rates(std::span<double> dy, double xi = 0.0, double pull = 0.0);
-  /// Rate of a dent, by the last rates().
-  [[nodiscard]] double dent_rate(std::size_t i) const noexcept { return solution_[layout_.dent(i)]; }
-  /// Rate of the yield function of a class, by the last rates().
-  [[nodiscard]] double yield_rate(std::size_t i);
-  /// Rate of the work of all walls, by the last rates().
-  [[nodiscard]] double power() const;
-  /// Rates of the core, C' and e', over Lam.
-  [[nodiscard]] const Core& core_flow() const noexcept { return flow_; }
+
+  /// Derivative of a support distance by Lam.
+  [[nodiscard]] double l_by_flow(std::size_t i) const noexcept;
   /// Lam, from the rates of the dents.
   [[nodiscard]] double flow_rate(std::span<const double> dy) const noexcept;
   /// Writes the rates of the core, which follow from the rates of the dents by its flow rule.
   void let_core_flow(std::span<double> dy) const noexcept;
 
- private:
-  /// Influence of the forces on the walls of one class on a wall of another.
-  struct Coupling {
-    double same = 0.0, mixed = 0.0, across = 0.0;  ///< sums of g c2^2, g c2 (1 - c2), g (1 - c2)^2
-    double G = 0.0;                                ///< influence
-  };
+  std::vector<ClassState> classes;
+  Centre centre;
 
-  void evaluate_elastically(std::span<const double> y);
-  void evaluate_flow(std::span<const double> y);
+ private:
   void evaluate_contacts(std::span<const double> y);
-  void evaluate_coupling();
-  void evaluate_core();
-  void evaluate_yield();
-  void differentiate();
-  void differentiate_kinematics(std::size_t i);
-  void differentiate_yield(std::size_t i);
-  void differentiate_balance(std::size_t direction);
-  void add(std::size_t i, const Slopes& by, double factor, std::span<double> row) const noexcept;
-  void fold_coverage(std::span<double> row) const noexcept;
-  // A row holds derivatives by the unknowns up to the core, by the coverage, and by the flow of the core.
-  [[nodiscard]] std::size_t by_Om() const noexcept { return layout_.core(); }
-  [[nodiscard]] std::size_t by_flow() const noexcept { return layout_.core() + 1; }
-  [[nodiscard]] std::size_t row_width() const noexcept { return layout_.core() + 2; }
-  [[nodiscard]] std::span<const double> row_at(std::size_t place) const noexcept {
-    return std::span(residual_by_).subspan(place * row_width(), row_width());
-  }
-  [[nodiscard]] std::span<double> new_row(std::size_t place) noexcept {
-    const auto row = std::span(residual_by_).subspan(place * row_width(), row_width());
-    std::ranges::fill(row, 0.0);
-    return row;
-  }
-  [[nodiscard]] double push_on(std::size_t line, std::size_t i) const noexcept;
-  void choose_balance();
-  void assemble(bool takes_core_along);
-  double eliminate(std::span<const double> right, std::span<const double> drift);
-  [[nodiscard]] double error(double xi);
-  double correct(double xi, std::span<double> y, double bound);
-  [[nodiscard]] double slowness() const noexcept;
-  [[nodiscard]] double rate_of(std::size_t place) const noexcept;
+  void evaluate_displacements();
+  void evaluate_yield(std::span<const double> y);
 
   Material material_;
+  double depth_;
+  std::vector<Coupling> couplings_;
   std::vector<Eigen::Matrix3d> shapes_;  ///< shapes that the core can take; empty: it keeps its shape
-  contacts::CentreLines lines_;
   Layout layout_;
-  std::vector<Coupling> coupling_;  ///< row by row
-  std::vector<ClassState> classes_;
-  Eigen::MatrixXd along_;                           ///< components of the walls' n n among the shapes of the core
-  Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();  ///< rest position of the weak spring
-  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d balance_ = Eigen::Matrix3d::Identity();  ///< directions of the equations (E)
-  std::vector<Eigen::Vector3d> shares_;                    ///< components of the lines' directions in balance_
+  Eigen::MatrixXd along_;  ///< components of the walls' n n among the shapes of the core
 
   // At the state that was evaluated.
-  std::vector<double> evaluated_;
-  bool is_known_ = false;
-  double Om_ = 0.0, m_by_Om_ = 0.0, shade_ = 1.0;
-  Core core_;
-  Eigen::Matrix3d pushes_;  ///< sum of F w n n over all walls
-  Eigen::Matrix3d T_;       ///< deviator of the load of the core
-  double s_ = 0.0, per_s_ = 0.0, per_S_ = 1.0, Q_ = 0.0;
+  std::vector<double> y_;  ///< empty: none
+  bool has_yield_ = false;
+  std::uint64_t revision_ = 0;
+  Eigen::Vector3d x_ = Eigen::Vector3d::Zero();
+  Coverage coverage_;
+  std::vector<double> forces_;
+  CoreLoad load_;
+  Eigen::VectorXd flow_;  ///< components of load_.flow.C among the shapes of the core
   double stored_ = 0.0;
-  Core flow_;
-  Eigen::VectorXd flow_components_;  ///< components of flow_.C among the shapes of the core
-
-  // Derivatives at that state.
-  std::vector<double> Om_by_zeta_;
-  double Om_by_flow_ = 0.0;
-  Eigen::Matrix3d pushes_by_flow_;   ///< derivative of pushes_ by the flow of the core, at given forces
-  std::vector<double> residual_by_;  ///< row by row
-
-  // The linear equations for rates or corrections of those unknowns up to the core that move.
-  std::vector<std::size_t> active_;                                                ///< indices of these unknowns
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix_;  ///< last columns: two right sides
-  std::vector<double> solution_, drift_;  ///< solutions for the two right sides, for all unknowns up to the core
-  double Lam_ = 0.0;                      ///< Lam of the last rates()
-  std::vector<double> rest_of_equations_, before_;
 };
 
 }  // namespace monograin::cel

@@ -6,16 +6,16 @@
 /// themselves and the flow rule of the core. Otherwise the equations determine the state at any instant. Integrators
 /// then advance the work only, in any form: the other unknowns rest, and complete() solves for them.
 ///
-/// Own law of this project (docs/theory/cel.md).
+/// Particle has the equations, Newton solves them, Motion has the rates, decide_mode() and GuardSet choose the mode;
+/// System puts these behind the interface HybridSystem. Own law of this project (docs/theory/cel.md).
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
-#include "cel/particle.hpp"
+#include "cel/guards.hpp"
+#include "cel/newton.hpp"
 #include "contacts/columns.hpp"
 #include "system/hybrid_system.hpp"
-#include "system/resolution.hpp"
 
 namespace monograin::cel {
 
@@ -45,10 +45,10 @@ class System final : public HybridSystem {
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   [[nodiscard]] bool is_semi_explicit() const noexcept override { return false; }
   [[nodiscard]] bool is_solvable() const noexcept override { return !particle_.layout().has_core(); }
-  [[nodiscard]] bool is_solvable_here() const noexcept override;
+  [[nodiscard]] bool is_solvable_here() const noexcept override { return is_solvable() || !particle_.any_flows(); }
   void solve(double xi, std::span<double> y) override;
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
-  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
+  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_.list(); }
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                 std::vector<Event>& log) override;
@@ -57,53 +57,30 @@ class System final : public HybridSystem {
   [[nodiscard]] double quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override;
   [[nodiscard]] bool is_open(int contact_class) const noexcept override {
-    return !particle_.at(static_cast<std::size_t>(contact_class)).touches;
+    return !particle_.classes[static_cast<std::size_t>(contact_class)].touches;
   }
   [[nodiscard]] std::vector<Diagnostic> warnings() const override;
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
 
  private:
-  enum GuardKind : int { k_made, k_lost, k_yield, k_reversal, k_fold, k_coverage };
-
-  [[nodiscard]] double force_unit() const noexcept;
-  [[nodiscard]] bool is_at_rest() const noexcept;
-  void forget_rates() noexcept { rates_at_ = k_nan; }
-  void evaluate(std::span<const double> y);
-  double evaluate_rates(double xi, std::span<const double> y);
-  [[nodiscard]] static double displacement(const ClassState& c, double xi);
-  [[nodiscard]] contacts::VisibleContact visible(std::size_t i, double xi, std::span<const double> y) const;
-  void give_way(std::size_t i, std::span<double> y);
   void take_up(std::size_t i, const Ramp& ramp, std::span<double> y);
-  void hold(std::size_t i, double displacement);
-  [[nodiscard]] Eigen::ArrayX2d velocities() const;
-  [[nodiscard]] double slack(std::size_t i) const noexcept;
-  [[nodiscard]] double displacement_ahead(std::size_t i, double xi, std::span<const double> y) const;
-  void decide_touch(std::size_t i, double xi, std::span<const double> y, std::vector<Event>& log);
-  void decide_mode(double xi, std::span<const double> y, std::vector<Event>& log, std::span<const std::size_t> fired);
-  void decide_flow(double xi, std::span<const double> y);
-  void arm_guards();
-  [[nodiscard]] double limit_value(const Guard& guard, double margin) const noexcept;
-  [[nodiscard]] std::optional<DomainEnd> limit_here(double xi, std::span<const double> y);
-  [[nodiscard]] DomainEnd end_at(const Guard& guard, double xi) const;
+  [[nodiscard]] std::optional<DomainEnd> arm_guards(double xi, std::span<const double> y);
+  [[nodiscard]] contacts::VisibleContact visible(std::size_t i, double xi) const;
 
   Settings settings_;
+  double force_unit_;
   std::vector<ContactClass> classes_;
   Particle particle_;
+  Newton newton_;
+  Motion motion_;
+  GuardSet guards_;
   std::vector<Unknown> unknowns_;
   contacts::Columns columns_;
-  std::size_t work_place_ = 0;
-  double depth_ = 1.0;  ///< largest displacement of the program, over R0
+  std::size_t work_place_;
 
   bool has_begun_ = false;
-  double deepest_ = 0.0;  ///< largest overlap in a row so far, over R0
-  std::vector<Guard> guards_;
-
-  // Rates at the state that was evaluated.
-  double rates_at_ = k_nan;  ///< step coordinate; NaN: no rates are cached
-  double margin_ = 1.0;
-  std::vector<double> rates_;
+  double deepest_ = 0.0;               ///< largest overlap in a row so far, over R0
   std::vector<double> last_;           ///< last state found by solve()
-  double flow_begin_ = 0.0;            ///< step coordinate at which the contacts that flow were decided
   std::vector<double> trial_, state_;  ///< work space
 };
 

@@ -336,7 +336,19 @@ TEST(CelContact, IsAGapBelowFirstTouch) {
   EXPECT_EQ(idle.area, 0.0);
 }
 
-// --- the core
+// --- coverage and core
+
+TEST(CelCoverage, HasTheDerivativesOfItsFactors) {
+  EXPECT_EQ(coverage_of(0.0).m, 1.0);
+  EXPECT_EQ(coverage_of(0.0).shade, 1.0);
+  for (const double Om : {0.1, 0.7, 1.5}) {
+    const Coverage at = coverage_of(Om);
+    const double m_Om = central_difference([](double x) { return coverage_of(x).m; }, Om, 1e-3);
+    const double shade_Om = central_difference([](double x) { return coverage_of(x).shade; }, Om, 1e-3);
+    EXPECT_NEAR(at.m_Om, m_Om, 1e-11) << Om;
+    EXPECT_NEAR(at.shade_Om, shade_Om, 1e-11) << Om;
+  }
+}
 
 TEST(CelAdvance, IsSmoothFromShrinkingToBulging) {
   EXPECT_EQ(advance_of(0.0).c, 0.0);

@@ -1,0 +1,42 @@
+#include "cel/centre.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace monograin::cel {
+
+Centre::Centre(std::span<const ContactClass> classes, bool is_free) : lines_(classes, is_free), shares_(lines_.size()) {
+  for (std::size_t i = 0; i < classes.size(); ++i) weights_.push_back(classes[i].multiplicity() * lines_.along(i));
+  choose_balance(std::vector<double>(classes.size()));
+}
+
+void Centre::choose_balance(std::span<const double> forces) {
+  if (directions() == 0) return;
+  balance_ = lines_.stiffest_directions([&](std::size_t line) {
+    double largest = std::numeric_limits<double>::min();
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      if (lines_.line_of(i) == line) largest = std::max(largest, std::abs(weights_[i]) * forces[i]);
+    }
+    return largest;
+  });
+  // Keeps the orientation of the basis, because the sign of the equations' determinant says whether a state is stable.
+  const Eigen::Index n = lines_.dimension();
+  if (balance_.topLeftCorner(n, n).determinant() < 0.0) balance_.col(n - 1) *= -1.0;
+  for (std::size_t line = 0; line < lines_.size(); ++line) shares_[line] = lines_.components(balance_, line);
+}
+
+Eigen::Vector3d Centre::net_force(const Eigen::Vector3d& x, std::span<const double> forces) const {
+  Eigen::Vector3d net = k_weak_spring * balance_.transpose() * stretch(x);
+  for (std::size_t line = 0; line < lines_.size(); ++line) {
+    double push = 0.0;
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      if (lines_.line_of(i) == line) push += weights_[i] * forces[i];
+    }
+    net += push * shares_[line];
+  }
+  return net;
+}
+
+}  // namespace monograin::cel

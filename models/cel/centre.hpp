@@ -1,0 +1,55 @@
+/// The centre of a particle: balance of the contact forces on it, equation (E), and a weak spring.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "contacts/centre/centre_lines.hpp"
+
+namespace monograin::cel {
+
+/// A centre that is fixed, or free to move along some directions. The spring determines it where no contact is stiff.
+class Centre {
+ public:
+  /// Stiffness of the spring over E R0.
+  static constexpr double k_weak_spring = 1e-9;
+
+  Centre(std::span<const ContactClass> classes, bool is_free);
+
+  /// Number of free directions.
+  [[nodiscard]] std::size_t directions() const noexcept { return static_cast<std::size_t>(lines_.dimension()); }
+  [[nodiscard]] const contacts::CentreLines& lines() const noexcept { return lines_; }
+
+  /// Chooses the directions of the equations (E): along the line of the largest forces, then across it, where the
+  /// round-off of these forces would otherwise exceed the spring.
+  /// @param forces  one for each class, of one wall
+  void choose_balance(std::span<const double> forces);
+  /// Net force on the centre, along the directions of the equations.
+  /// @param x  displacement of the centre along its free directions
+  [[nodiscard]] Eigen::Vector3d net_force(const Eigen::Vector3d& x, std::span<const double> forces) const;
+  /// Derivatives of an equation by the force on one wall of a class, and by the centre.
+  [[nodiscard]] double by_force(std::size_t equation, std::size_t i) const noexcept {
+    return shares_[lines_.line_of(i)][equation] * weights_[i];
+  }
+  [[nodiscard]] Eigen::Vector3d by_centre(std::size_t equation) const noexcept {
+    return k_weak_spring * balance_.col(equation);
+  }
+
+  /// Puts the rest position of the spring.
+  void rest_at(const Eigen::Vector3d& x) noexcept { rest_ = x; }
+  [[nodiscard]] Eigen::Vector3d stretch(const Eigen::Vector3d& x) const noexcept { return x - rest_; }
+  /// Energy of the spring, which is no part of the law.
+  [[nodiscard]] double energy(const Eigen::Vector3d& x) const noexcept {
+    return 0.5 * k_weak_spring * stretch(x).squaredNorm();
+  }
+
+ private:
+  contacts::CentreLines lines_;
+  std::vector<double> weights_;  ///< push of all walls of a class along their line, per force of one wall
+  Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d balance_ = Eigen::Matrix3d::Identity();  ///< directions of the equations
+  std::vector<Eigen::Vector3d> shares_;                    ///< components of the lines' directions among these
+};
+
+}  // namespace monograin::cel

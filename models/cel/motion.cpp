@@ -1,0 +1,60 @@
+#include "cel/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace monograin::cel {
+namespace {
+
+/// Rate, per step coordinate, at which an integrated state is drawn back to the equations. Next to the beginning of
+/// flow, where contacts may be very shallow, the rate is k_first_pull over the distance from there: times the length of
+/// a first step it is below one, so that correctors converge. k_nearest_flow keeps the rate smooth for the shortest
+/// steps.
+constexpr double k_pull = 20.0;
+constexpr double k_first_pull = 0.5;
+constexpr double k_nearest_flow = 1e-9;
+
+/// Speed of the walls, over the sum of that and the speed of their contacts: 0 at a fold.
+double slowness(const Particle& p, std::span<const double> rates) noexcept {
+  double speed = 0.0;
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const ClassState& c = p.classes[i];
+    const double u_rate = c.contact.u_by.coordinate * rates[i];
+    speed = std::max(speed, std::abs(c.takes_force() ? u_rate : c.drive.rate()));
+    fastest = std::max({fastest, std::abs(u_rate), std::abs(c.dent.h_zeta * rates[p.layout().dent(i)])});
+  }
+  return speed > 0.0 ? speed / (speed + fastest) : 1.0;
+}
+
+}  // namespace
+
+double Motion::evaluate(Particle& p, double xi, std::span<const double> y) {
+  p.evaluate(y);
+  if (xi == xi_ && p.revision() == revision_) return margin_;
+  tangent_.set(p, p.any_flows());
+  const std::size_t size = p.layout().core();
+  right_.setZero(size, 2);
+  for (std::size_t i = 0; i < p.size(); ++i) right_(i, 0) = p.classes[i].drive.rate();
+  p.residual(xi, {right_.col(1).data(), size});
+  const double since = xi - flow_begin_;
+  right_.col(1) *= -(since > 0.0 ? std::max(k_pull, k_first_pull / (since + k_nearest_flow)) : k_pull);
+  const double sign = tangent_.solve(right_, solutions_);
+
+  rates_.assign(solutions_.data(), solutions_.data() + size);
+  rates_.push_back(p.flow_rate(rates_));
+  drawn_rates_.resize(p.layout().size());
+  Eigen::Map<Eigen::VectorXd>(drawn_rates_.data(), size) = solutions_.rowwise().sum();
+  p.let_core_flow(drawn_rates_);
+  margin_ = sign * slowness(p, rates_);
+  power_ = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const ClassState& c = p.classes[i];
+    power_ += c.count * c.contact.F * (c.takes_force() ? tangent_.displacement_rate(i, rates_) : c.drive.rate());
+  }
+  xi_ = xi;
+  revision_ = p.revision();
+  return margin_;
+}
+
+}  // namespace monograin::cel

@@ -1,0 +1,97 @@
+#include "cel/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "system/limit.hpp"
+
+namespace monograin::cel {
+namespace {
+
+/// Displacement of a free centre (over R0) from which on forces drive it away: only the weak spring holds it there.
+constexpr double k_farthest = 10.0;
+
+constexpr int k_most_corrections = 60;
+constexpr int k_most_halvings = 40;
+constexpr int k_most_polishings = 4;
+constexpr double k_most_growth = 0.03;  ///< largest growth of a dent in one correction
+/// Smallest dent of a trial, over a_Y: a dent that begins to flow is a_Y to within round-off.
+constexpr double k_least_dent = 0.9;
+constexpr double k_solved = 1e-10;  ///< residual, over the largest displacement, up to which a state is a solution
+/// Residual, over the largest displacement, below which corrections only polish: round-off may make it larger.
+constexpr double k_stalled = 1e-14;
+constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+/// Largest residual of the state that was evaluated, as a displacement. A yield function counts times the elastic
+/// displacement, because it has the relative accuracy of that.
+double Newton::error(const Particle& p, double xi) {
+  const Layout& layout = p.layout();
+  residual_.setZero(layout.core(), 2);
+  p.residual(xi, {residual_.data(), layout.core()});
+  double largest = 0.0;
+  for (std::size_t j = 0; j < layout.core(); ++j) {
+    const double unit = layout.is_dent(j) ? std::min(1.0, p.classes[j - p.size()].contact.u) : 1.0;
+    largest = std::max(largest, unit * std::abs(residual_(j, 0)));
+  }
+  return largest;
+}
+
+/// Corrects a state by a Newton step, halved until the error is less than a bound.
+/// @return the error of the corrected state
+double Newton::correct(Particle& p, double xi, std::span<double> y, double bound) {
+  const Layout& layout = p.layout();
+  tangent_.set(p, false);
+  tangent_.solve(residual_, correction_);
+  before_.assign(y.begin(), y.end());
+  double growth = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) growth = std::max(growth, std::abs(correction_(layout.dent(i), 0)));
+  double share = std::min(1.0, k_most_growth / growth);
+  double now = 0.0;
+  for (int halvings = 0; halvings < k_most_halvings; ++halvings, share *= 0.5) {
+    for (std::size_t j = 0; j < layout.core(); ++j) {
+      y[j] = before_[j] - share * correction_(j, 0);
+      if (layout.is_dent(j)) y[j] = std::max(y[j], k_least_dent * p.material().a_Y);
+    }
+    p.evaluate(y, p.any_flows());
+    now = error(p, xi);
+    if (now < bound) break;
+  }
+  return now;
+}
+
+void Newton::solve(Particle& p, double xi, std::span<double> y) {
+  constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  p.prescribe(xi, y);
+  double largest = p.any_flows() ? p.material().Y : 0.0;
+  for (const ClassState& c : p.classes) largest = std::max(largest, std::abs(c.drive.value(xi)));
+  p.evaluate(y);
+  p.choose_balance();
+  double now = error(p, xi);
+  // A free centre is corrected further: where only the weak spring holds it, a tiny net force still moves it far.
+  const bool is_free = p.layout().directions > 0;
+  int polished = 0;
+  for (int i = 0; i < k_most_corrections && (is_free || now > k_rounding * largest); ++i) {
+    const bool is_polishing = now <= k_stalled * largest;
+    const double next = correct(p, xi, y, is_polishing ? k_infinity : now);
+    if (!(next < now) && (!is_polishing || !is_free)) {
+      std::ranges::copy(before_, y.begin());
+      break;
+    }
+    now = next;
+    double correction = 0.0;
+    for (std::size_t j = 0; j < p.layout().core(); ++j) {
+      if (!p.layout().is_dent(j)) correction = std::max(correction, std::abs(correction_(j, 0)));
+    }
+    if (is_polishing && (correction <= k_rounding * largest || ++polished == k_most_polishings)) break;
+  }
+  p.evaluate(y);
+  const bool takes_force = std::ranges::any_of(p.classes, &ClassState::takes_force);
+  if (takes_force && p.centre.stretch(p.position()).cwiseAbs().maxCoeff() > k_farthest)
+    throw DomainError(Limit::centre_driven_away);
+  if (!(now <= k_solved * std::max(largest, p.material().Y))) throw DomainError(Limit::applicability);
+}
+
+}  // namespace monograin::cel

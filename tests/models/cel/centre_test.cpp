@@ -1,0 +1,86 @@
+// The balance of forces on a free centre, and the influence of contacts on each other.
+
+#include "cel/centre.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cel/coupling.hpp"
+#include "elastic/nonlocal_coupling.hpp"
+#include "models/accuracy.hpp"
+
+namespace monograin::cel::centre_test {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<ContactClass> walls(const std::vector<Vector3d>& normals) {
+  std::vector<ContactClass> classes;
+  for (const Vector3d& normal : normals) classes.push_back({.name = "wall", .normals = {normal.normalized()}});
+  return classes;
+}
+
+TEST(CelCentre, HasNoDirectionsIfItIsFixed) {
+  EXPECT_EQ(Centre(walls({{0, 0, 1}, {0, 1, -1}}), false).directions(), 0u);
+  EXPECT_EQ(Centre(walls({{0, 0, 1}, {0, 1, -1}}), true).directions(), 2u);
+}
+
+TEST(CelCentre, FeelsTheSumOfTheForcesAndItsSpring) {
+  const std::vector<ContactClass> classes = walls({{0, 0, 1}, {1, 0, -1}, {-1, 0.2, -1}});
+  Centre centre(classes, true);
+  const std::vector<double> forces{0.5, 0.2, 0.3};
+  centre.choose_balance(forces);
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 0; i < classes.size(); ++i) sum += forces[i] * classes[i].normals[0];
+  centre.rest_at({0.1, 0.2, 0.3});
+  EXPECT_NEAR(centre.net_force({0.1, 0.2, 0.3}, forces).norm(), sum.norm(), 1e-15);
+  const Vector3d stretched = centre.net_force({1.1, 0.2, 0.3}, {std::vector<double>(3)});
+  EXPECT_NEAR(stretched.norm(), Centre::k_weak_spring, 1e-24);
+  EXPECT_NEAR(centre.energy({1.1, 0.2, 0.3}), 0.5 * Centre::k_weak_spring, 1e-24);
+  // Equations are linear in forces and centre.
+  for (std::size_t k = 0; k < 3; ++k) {
+    double net = centre.by_centre(k).dot(Vector3d(1, 0, 0));
+    for (std::size_t i = 0; i < classes.size(); ++i) net += centre.by_force(k, i) * forces[i];
+    EXPECT_NEAR(net, centre.net_force({1.1, 0.2, 0.3}, forces)[k], 1e-15) << k;
+  }
+}
+
+TEST(CelCentre, LeavesNoRoundOffOfLargeForcesAcrossTheirLine) {
+  const Vector3d n = Vector3d(0.3, -0.7, 0.5).normalized();
+  Centre centre(walls({n, -n, {1, 0.2, 0}}), true);
+  const std::vector<double> forces{0.7, 0.7, 0.0};
+  centre.choose_balance(forces);
+  EXPECT_EQ(centre.net_force(Vector3d::Zero(), forces), Vector3d::Zero());
+}
+
+TEST(CelCoupling, IsSymmetricAndThatOfTheSphereOnAFreshSurface) {
+  const double nu = 0.3;
+  const std::vector<ContactClass> classes = walls({{0, 0, 1}, {0, 0, -1}, {1, 0, 0.3}});
+  const std::vector<Coupling> couplings = couplings_of(nu, classes);
+  ASSERT_EQ(couplings.size(), 9u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      EXPECT_LE(relative_error(couplings[3 * i + j].G(1.1, 0.9), couplings[3 * j + i].G(1.1, 0.9)), 1e-14);
+      if (i == j) continue;
+      const double theta = nonlocal::angle_between(classes[i].normals[0], classes[j].normals[0]);
+      EXPECT_LE(relative_error(couplings[3 * i + j].G(1.0, 1.0), nonlocal::sphere_influence(nu, theta)), 1e-13);
+    }
+    EXPECT_GT(couplings[4 * i].G(1.0, 1.0), 0.0);
+    // Coverage takes from neighbours only, dents add to walls that are parallel only.
+    EXPECT_NEAR(couplings[4 * i].by_shade(1.0), 0.0, 1e-15);
+  }
+}
+
+TEST(CelCoupling, HasItsDerivatives) {
+  for (const Coupling& at : couplings_of(0.2, walls({{0, 0, 1}, {1, 0, 0.3}, {1, 1, -1}}))) {
+    const double by_root = central_difference([&](double x) { return at.G(x, 0.8); }, 1.3, 0.1);
+    const double by_shade = central_difference([&](double x) { return at.G(1.3, x); }, 0.8, 0.1);
+    EXPECT_NEAR(at.by_root(0.8), by_root, 1e-14);
+    EXPECT_NEAR(at.by_shade(1.3), by_shade, 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace monograin::cel::centre_test
