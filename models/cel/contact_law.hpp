@@ -1,10 +1,16 @@
-/// One contact of an elastic-plastic particle by itself: the properties of its dent, and the elastic law on that dent.
+/// Contacts of an elastic-plastic particle: the properties of a dent, the elastic law on that dent, and the influence
+/// of contacts on each other.
 ///
 /// Lengths are over R0, stresses over E, forces over E R0^2, areas over pi R0^2; Y stands for Y/E. The dent of a
 /// contact is its largest radius zeta, referred to a sphere of unit radius: zeta = a_Y on a fresh surface, and zeta
 /// only grows. The law also depends on the support distance l of the core under the wall and on the coverage factor m
 /// of the particle. Own law of this project (docs/theory/cel.md, sections 2 to 4).
 #pragma once
+
+#include <span>
+#include <vector>
+
+#include "system/walls.hpp"
 
 namespace monograin::cel {
 
@@ -96,5 +102,21 @@ struct Advance {
 /// Advance of a wall at a support distance l.
 /// @param growth  l - 1, given as such because it is small next to 1 while the core has hardly flowed
 [[nodiscard]] Advance advance_of(double growth) noexcept;
+
+/// Influence of the forces on all walls of one class on a wall of another:
+///   G = sum g(theta) [1 + c2 (root - 1)] [c2 + (1 - c2) shade],   c2 = cos^2 theta
+/// with the product of the roots of both compliances and the factor of neighbours (Coverage::shade).
+struct Coupling {
+  double same = 0.0, mixed = 0.0, across = 0.0;  ///< sums of g c2^2, g c2 (1 - c2), g (1 - c2)^2
+
+  [[nodiscard]] double G(double root, double shade) const noexcept {
+    return mixed + across * shade + root * by_root(shade);
+  }
+  [[nodiscard]] double by_root(double shade) const noexcept { return same + mixed * shade; }
+  [[nodiscard]] double by_shade(double root) const noexcept { return across + root * mixed; }
+};
+
+/// Couplings of every class to every other, row by row.
+[[nodiscard]] std::vector<Coupling> couplings_of(double poisson_ratio, std::span<const ContactClass> classes);
 
 }  // namespace monograin::cel

@@ -59,13 +59,7 @@ constexpr std::array<string_view, 7> k_domain{
 constexpr std::array<string_view, 1> k_skipped{"adhesion and hardening: not part of the model"};
 
 std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach) {
-  return std::make_unique<System>(Settings{.initial_radius = input.radius,
-                                           .youngs_modulus = input.material("youngs_modulus"),
-                                           .poisson_ratio = input.material("poisson_ratio"),
-                                           .yield_stress = input.material("yield_stress"),
-                                           .centre_is_free = input.centre_is_free,
-                                           .reach = reach},
-                                  std::move(classes));
+  return std::make_unique<System>(input, std::move(classes), reach);
 }
 
 std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {

@@ -1,6 +1,7 @@
 #include "cel/modes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cel/newton.hpp"
@@ -9,12 +10,26 @@
 namespace monograin::cel {
 namespace {
 
+/// Value of the yield function at which its guard fires; more than round-off of a contact that just stopped flowing.
+constexpr double k_beyond_yield = 1e-12;
 /// Distance of the yield function from zero up to which a contact may flow.
 constexpr double k_at_yield = 1e-9;
 /// Least rate of the yield function at which a contact at yield begins to flow.
 constexpr double k_least_rate = 1e-13;
 /// Relative difference of the rates of dents that is round-off.
 constexpr double k_alike = 1e-6;
+/// Margin to a fold (Motion::margin()) at which a run ends: the stiffness is infinite at the fold.
+constexpr double k_least_margin = 1e-5;
+/// Largest coverage to which the law is fitted: half the contact area over pi R0^2, which is 2 for the whole surface.
+constexpr double k_most_coverage = 1.7;
+
+/// Names and directions of the guards, in the order of their kinds.
+struct Kind {
+  std::string_view name;
+  int direction;
+};
+constexpr std::array<Kind, 6> k_kinds{
+    {{"contact-made", 1}, {"contact-lost", -1}, {"yield", 1}, {"load-reversal", -1}, {"limit", -1}, {"limit", -1}}};
 
 /// Elastic displacement of a contact at the first trial instant ahead at which it is clearly open or closed, or else 0.
 /// Trials begin with the motion at this instant.
@@ -65,7 +80,70 @@ void decide_flow(Particle& p, Motion& motion, double xi, std::span<const double>
   }
 }
 
+double value_of(const Guard& guard, const Particle& p, const Motion& motion, double xi) {
+  const auto i = static_cast<std::size_t>(std::max(0, guard.index));
+  const ClassState& c = p.classes[i];
+  const double dent_rate = motion.rates()[p.layout().dent(i)];
+  switch (guard.kind) {
+    case k_made:
+      return (c.contact.u - p.slack(i)) / p.depth();
+    case k_lost:
+      return c.takes_force() ? c.drive.value(xi) / c.drive.size() : (c.contact.u + p.slack(i)) / p.depth();
+    case k_yield:
+      return c.yield.f - k_beyond_yield;
+    case k_reversal:
+      return dent_rate / (std::abs(dent_rate) + std::abs(c.drive.rate()) + p.depth());
+    case k_fold:
+      return motion.margin() - k_least_margin;
+    default:
+      return k_most_coverage - p.coverage().Om;
+  }
+}
+
 }  // namespace
+
+Guard& GuardSet::add(int kind, int index) {
+  const Kind& of = k_kinds[static_cast<std::size_t>(kind)];
+  list_.push_back({.kind = kind, .index = index, .direction = of.direction, .name = of.name});
+  return list_.back();
+}
+
+void GuardSet::arm(const Particle& p) {
+  list_.clear();
+  if (p.is_at_rest()) return;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const int index = static_cast<int>(i);
+    const ClassState& c = p.classes[i];
+    if (!c.takes_force()) {
+      add(c.touches ? k_lost : k_made, index).is_silent = c.gives_way;
+    } else if (c.drive.end() < 0.0) {
+      Guard& lost = add(k_lost, index);
+      lost.is_exact = lost.is_monotone = true;
+    }
+    if (c.touches) add(c.flows ? k_reversal : k_yield, index);
+  }
+  add(k_fold, -1);
+  add(k_coverage, -1);
+}
+
+void GuardSet::values(const Particle& p, const Motion& motion, double xi, std::span<double> values) const {
+  for (std::size_t g = 0; g < list_.size(); ++g) values[g] = value_of(list_[g], p, motion, xi);
+}
+
+std::optional<DomainEnd> GuardSet::limit_met(const Particle& p, const Motion& motion, double xi) const {
+  for (const Guard& guard : list_) {
+    if (guard.kind >= k_fold && value_of(guard, p, motion, xi) <= 0.0) return end_at(guard, p, xi);
+  }
+  return std::nullopt;
+}
+
+DomainEnd end_at(const Guard& guard, const Particle& p, double xi) {
+  const Event event{guard.name};
+  if (guard.kind == k_coverage) return {event, {Limit::surface_covered, -1, "coverage", p.coverage().Om}};
+  double largest = 0.0;
+  for (const ClassState& c : p.classes) largest = std::max(largest, c.position(xi));
+  return {event, {Limit::applicability, -1, "largest displacement/R0", largest}};
+}
 
 void decide_mode(Particle& p, Motion& motion, double xi, std::span<const double> y, std::span<const Guard> fired,
                  std::vector<Event>& log) {

@@ -1,12 +1,36 @@
-/// Decides which contacts of a particle touch, and which flow.
+/// Modes of a coupled elastic-plastic particle: which contacts touch and which flow, the guards of a mode, and the
+/// limits of the law.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "cel/guards.hpp"
+#include "cel/motion.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin::cel {
+
+enum GuardKind : int { k_made, k_lost, k_yield, k_reversal, k_fold, k_coverage };
+
+/// Set of the guards that are alive until the next transition or the end of the step.
+class GuardSet {
+ public:
+  void arm(const Particle& p);
+  [[nodiscard]] std::span<const Guard> list() const noexcept { return list_; }
+  /// Values at the state that particle and motion evaluated.
+  void values(const Particle& p, const Motion& motion, double xi, std::span<double> values) const;
+  /// The limit that this state is at or beyond, if its guard is alive.
+  [[nodiscard]] std::optional<DomainEnd> limit_met(const Particle& p, const Motion& motion, double xi) const;
+
+ private:
+  Guard& add(int kind, int index);
+
+  std::vector<Guard> list_;
+};
+
+/// End of a run at a limit, whose guard is k_fold or k_coverage.
+[[nodiscard]] DomainEnd end_at(const Guard& guard, const Particle& p, double xi);
 
 /// Decides the mode from here on, and logs contacts that are made or lost, or begin or stop to flow.
 /// @param fired  guards that have just fired

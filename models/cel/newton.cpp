@@ -29,7 +29,6 @@ constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 /// displacement, because it has the relative accuracy of that.
 double Newton::error(const Particle& p, double xi) {
   const Layout& layout = p.layout();
-  residual_.setZero(layout.core(), 2);
   p.residual(xi, {residual_.data(), layout.core()});
   double largest = 0.0;
   for (std::size_t j = 0; j < layout.core(); ++j) {
@@ -64,10 +63,11 @@ double Newton::correct(Particle& p, double xi, std::span<double> y, double bound
 
 void Newton::solve(Particle& p, double xi, std::span<double> y) {
   constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  residual_.setZero(p.layout().core(), 2);
   p.prescribe(xi, y);
   double largest = p.any_flows() ? p.material().Y : 0.0;
   for (const ClassState& c : p.classes) largest = std::max(largest, std::abs(c.drive.value(xi)));
-  p.evaluate(y);
+  p.evaluate(y, p.any_flows());
   p.choose_balance();
   double now = error(p, xi);
   // A free centre is corrected further: where only the weak spring holds it, a tiny net force still moves it far.

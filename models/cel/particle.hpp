@@ -24,7 +24,6 @@
 #include "cel/centre.hpp"
 #include "cel/contact_law.hpp"
 #include "cel/core.hpp"
-#include "cel/coupling.hpp"
 #include "contacts/wall_drive.hpp"
 
 namespace monograin::cel {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "cel/modes.hpp"
-
 namespace monograin::cel {
 namespace {
 
@@ -21,15 +19,15 @@ constexpr double k_hard_margin = 1e-3;
 constexpr double k_least_modulus_over_yield = 6.25;
 constexpr double k_deepest = 0.5;
 
-Material material_of(const Settings& s) { return {s.yield_stress / s.youngs_modulus, s.poisson_ratio}; }
-
-double force_unit_of(const Settings& s) { return s.youngs_modulus * s.initial_radius * s.initial_radius; }
-
-/// Largest displacement of a program, over R0.
-double depth_of(const Settings& s) {
-  const double elastic = std::pow(0.75 * s.reach.force / (force_unit_of(s) * material_of(s).Es), 2.0 / 3.0);
-  const double depth = std::max(s.reach.displacement / s.initial_radius, elastic);
-  return depth > 0.0 ? std::min(depth, 1.0) : 1.0;
+/// Particle of a scene, with lengths over R0 and stresses over E.
+Particle particle_of(const ModelInput& input, std::span<const ContactClass> classes, const Reach& reach) {
+  const double modulus = input.material("youngs_modulus");
+  const double poisson_ratio = input.material("poisson_ratio");
+  const Material material(input.material("yield_stress") / modulus, poisson_ratio);
+  const double force_unit = modulus * input.radius * input.radius;
+  const double elastic = std::pow(0.75 * reach.force / (force_unit * material.Es), 2.0 / 3.0);
+  const double depth = std::max(reach.displacement / input.radius, elastic);
+  return {material, poisson_ratio, classes, input.centre_is_free, depth > 0.0 ? std::min(depth, 1.0) : 1.0};
 }
 
 /// Unknowns of a particle, then the work of the walls.
@@ -56,7 +54,7 @@ std::vector<Unknown> unknowns_of(const Particle& p, std::span<const ContactClass
 
 /// Rates that the program prescribes: of displacements in the first column, of forces in the second.
 Eigen::ArrayX2d velocities(const Particle& p) {
-  Eigen::ArrayX2d rates = Eigen::ArrayX2d::Zero(static_cast<Eigen::Index>(p.size()), 2);
+  Eigen::ArrayX2d rates = Eigen::ArrayX2d::Zero(p.size(), 2);
   Eigen::Index i = 0;
   for (const ClassState& c : p.classes) rates(i++, c.takes_force() ? 1 : 0) = c.drive.rate();
   return rates;
@@ -73,13 +71,16 @@ bool goes_on(const Eigen::ArrayX2d& before, const Eigen::ArrayX2d& after) {
 
 }  // namespace
 
-System::System(const Settings& settings, std::vector<ContactClass> classes)
-    : settings_(settings),
-      force_unit_(force_unit_of(settings)),
+System::System(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach)
+    : length_(input.radius),
+      modulus_(input.material("youngs_modulus")),
+      force_unit_(modulus_ * length_ * length_),
+      modulus_over_yield_(modulus_ / input.material("yield_stress")),
+      centre_is_free_(input.centre_is_free),
       classes_(std::move(classes)),
-      particle_(material_of(settings), settings.poisson_ratio, classes_, settings.centre_is_free, depth_of(settings)),
+      particle_(particle_of(input, classes_, reach)),
       unknowns_(unknowns_of(particle_, classes_)),
-      columns_(true, true, k_regime_words, classes_, settings.centre_is_free,
+      columns_(true, true, k_regime_words, classes_, centre_is_free_,
                std::array<Observable, 2>{{{"core_strain", "-", {}}, {"coverage", "-", {}}}}),
       work_place_(particle_.layout().size()),
       last_(unknowns_.size()),
@@ -89,7 +90,7 @@ System::System(const Settings& settings, std::vector<ContactClass> classes)
 void System::start(std::span<double> y) {
   std::ranges::fill(y, 0.0);
   for (std::size_t i = 0; i < classes_.size(); ++i) {
-    y[i] = -classes_[i].gap / settings_.initial_radius;
+    y[i] = -classes_[i].gap / length_;
     y[particle_.layout().dent(i)] = particle_.material().a_Y;
     ClassState& c = particle_.classes[i];
     c.flows = c.gives_way = c.touches = false;
@@ -174,7 +175,7 @@ void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
     return;
   }
   if (takes_force != c.takes_force()) y[i] = takes_force ? c.contact.F : c.contact.u;
-  c.drive = contacts::WallDrive(ramp, takes_force ? force_unit_ : settings_.initial_radius);
+  c.drive = contacts::WallDrive(ramp, takes_force ? force_unit_ : length_);
 }
 
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
@@ -204,7 +205,7 @@ std::optional<DomainEnd> System::arm_guards(double xi, std::span<const double> y
   guards_.arm(particle_);
   if (guards_.list().empty()) return std::nullopt;
   motion_.evaluate(particle_, xi, y);
-  return limit_met(particle_, motion_, xi);
+  return guards_.limit_met(particle_, motion_, xi);
 }
 
 void System::guard_values(double xi, std::span<const double> y, std::span<double> values) {
@@ -220,7 +221,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     const Guard& guard = guards.emplace_back(guards_.list()[g]);
     if (guard.kind >= k_fold) {
       log.push_back({guard.name});
-      return end_at(guard.kind, particle_, xi);
+      return end_at(guard, particle_, xi);
     }
     if (guard.kind > k_lost) continue;
     const auto i = static_cast<std::size_t>(guard.index);
@@ -242,42 +243,40 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
 /// Numbers of a contact in a row, at the state that was evaluated.
 contacts::VisibleContact System::visible(std::size_t i, double xi) const {
   const ClassState& c = particle_.classes[i];
-  const double length = settings_.initial_radius;
   const double d = c.position(xi);
   const double area = std::numbers::pi * c.contact.area;
   const int closed = c.flows ? k_plastic : c.dent.zeta > particle_.material().a_Y ? k_unloaded : k_elastic;
-  return {.displacement = d * length,
-          .overlap = (d + particle_.carried(i)) * length,
+  return {.displacement = d * length_,
+          .overlap = (d + particle_.carried(i)) * length_,
           .force = c.contact.F * force_unit_,
-          .contact_radius = std::sqrt(c.contact.area) * length,
-          .pressure = area > 0.0 ? c.contact.F / area * settings_.youngs_modulus : 0.0,
+          .contact_radius = std::sqrt(c.contact.area) * length_,
+          .pressure = area > 0.0 ? c.contact.F / area * modulus_ : 0.0,
           .regime = static_cast<double>(c.touches ? closed : k_open)};
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
   particle_.evaluate(y);
-  const double length = settings_.initial_radius;
   contacts::Energies energies = contacts::k_no_energies;
   if (has_energies()) {
-    const double energy_unit = force_unit_ * length;
+    const double energy_unit = force_unit_ * length_;
     energies = {y[work_place_] * energy_unit, particle_.stored_energy() * energy_unit};
   }
   const auto shown = [&](std::size_t i) {
     const contacts::VisibleContact contact = visible(i, xi);
-    deepest_ = std::max(deepest_, contact.overlap / length);
+    deepest_ = std::max(deepest_, contact.overlap / length_);
     return contact;
   };
   columns_.write(energies, classes_.size(), shown, values,
                  std::array{particle_.load().core.e, particle_.coverage().Om});
-  if (settings_.centre_is_free) {
-    contacts::write_centre_columns(particle_.centre.lines().in_space(particle_.position()) * length, values);
+  if (centre_is_free_) {
+    contacts::write_centre_columns(particle_.centre.lines().in_space(particle_.position()) * length_, values);
   }
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
   particle_.evaluate(y);
   const auto i = static_cast<std::size_t>(contact_class);
-  return quantity_of(contacts::wall_of(visible(i, xi), settings_.initial_radius), quantity);
+  return quantity_of(contacts::wall_of(visible(i, xi), length_), quantity);
 }
 
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
@@ -286,9 +285,8 @@ double System::controlled(Control control, int contact_class, double xi, std::sp
 
 std::vector<Diagnostic> System::warnings() const {
   std::vector<Diagnostic> found;
-  const double softness = settings_.youngs_modulus / settings_.yield_stress;
-  if (softness < k_least_modulus_over_yield)
-    found.push_back({"E/Y is below 6.25, the softest material that the law is fitted to", "E/Y", softness});
+  if (modulus_over_yield_ < k_least_modulus_over_yield)
+    found.push_back({"E/Y is below 6.25, the softest material that the law is fitted to", "E/Y", modulus_over_yield_});
   if (deepest_ > k_deepest)
     found.push_back({"a wall goes beyond half the radius, where the law is not fitted", "overlap/R0", deepest_});
   return found;

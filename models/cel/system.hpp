@@ -6,31 +6,23 @@
 /// themselves and the flow rule of the core. Otherwise the equations determine the state at any instant. Integrators
 /// then advance the work only, in any form: the other unknowns rest, and complete() solves for them.
 ///
-/// Particle has the equations, Newton solves them, Motion has the rates, decide_mode() and GuardSet choose the mode;
-/// System puts these behind the interface HybridSystem. Own law of this project (docs/theory/cel.md).
+/// Particle has the equations, Newton solves them, Motion has the rates, decide_mode() chooses the mode, GuardSet
+/// watches its end; System puts these behind the interface HybridSystem. Own law of this project (docs/theory/cel.md).
 #pragma once
 
 #include <vector>
 
-#include "cel/guards.hpp"
+#include "cel/modes.hpp"
 #include "cel/newton.hpp"
 #include "contacts/columns.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/model.hpp"
 
 namespace monograin::cel {
 
-struct Settings {
-  double initial_radius = 0.0;  ///< R0 [m], > 0
-  double youngs_modulus = 0.0;  ///< E [Pa], > 0
-  double poisson_ratio = 0.0;   ///< in [0, 0.5]
-  double yield_stress = 0.0;    ///< Y [Pa], > 0
-  bool centre_is_free = false;
-  Reach reach{};  ///< largest displacement and force of the program, which give the scales of the unknowns
-};
-
 class System final : public HybridSystem {
  public:
-  System(const Settings& settings, std::vector<ContactClass> classes);
+  /// @param reach  largest displacement and force of the program, which give the scales of the unknowns
+  System(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach);
 
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }
@@ -67,8 +59,9 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<DomainEnd> arm_guards(double xi, std::span<const double> y);
   [[nodiscard]] contacts::VisibleContact visible(std::size_t i, double xi) const;
 
-  Settings settings_;
-  double force_unit_;
+  double length_, modulus_, force_unit_;  ///< R0 [m], E [Pa], E R0^2 [N]
+  double modulus_over_yield_;
+  bool centre_is_free_;
   std::vector<ContactClass> classes_;
   Particle particle_;
   Newton newton_;

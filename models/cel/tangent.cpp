@@ -1,49 +1,38 @@
 #include "cel/tangent.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "system/limit.hpp"
 
 namespace monograin::cel {
 
 double eliminate(RowMatrix& equations) {
-  const std::size_t n = equations.rows();
-  const std::size_t end = n + 2;
-  const auto row = [&](std::size_t i) { return &equations(i, 0); };
+  const Eigen::Index n = equations.rows();
   double sign = 1.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    double largest = 0.0;
-    for (std::size_t j = 0; j < n; ++j) largest = std::max(largest, std::abs(row(i)[j]));
+  for (Eigen::Index at = 0; at < n; ++at) {
+    const double largest = equations.row(at).head(n).cwiseAbs().maxCoeff();
     if (!(largest > 0.0)) throw DomainError(Limit::applicability);
-    const double scale = 1.0 / largest;
-    for (std::size_t j = 0; j < end; ++j) row(i)[j] *= scale;
+    equations.row(at) *= 1.0 / largest;
   }
-  for (std::size_t at = 0; at < n; ++at) {
-    std::size_t pivot = at;
-    for (std::size_t i = at + 1; i < n; ++i) {
-      if (std::abs(row(i)[at]) > std::abs(row(pivot)[at])) pivot = i;
-    }
-    double* const upper = row(at);
-    if (pivot != at) {
-      std::swap_ranges(upper + at, upper + end, row(pivot) + at);
+  for (Eigen::Index at = 0; at < n; ++at) {
+    Eigen::Index below = 0;
+    equations.col(at).tail(n - at).cwiseAbs().maxCoeff(&below);
+    if (below > 0) {
+      equations.row(at).swap(equations.row(at + below));
       sign = -sign;
     }
-    if (upper[at] == 0.0) throw DomainError(Limit::applicability);
-    if (upper[at] < 0.0) sign = -sign;
-    for (std::size_t i = at + 1; i < n; ++i) {
-      double* const lower = row(i);
-      const double factor = lower[at] / upper[at];
-      if (factor == 0.0) continue;
-      for (std::size_t j = at + 1; j < end; ++j) lower[j] -= factor * upper[j];
+    const double pivot = equations(at, at);
+    if (pivot == 0.0) throw DomainError(Limit::applicability);
+    if (pivot < 0.0) sign = -sign;
+    for (Eigen::Index other = at + 1; other < n; ++other) {
+      const double factor = equations(other, at) / pivot;
+      if (factor != 0.0) equations.row(other).tail(n + 1 - at) -= factor * equations.row(at).tail(n + 1 - at);
     }
   }
-  for (std::size_t at = n; at-- > 0;) {
-    for (std::size_t i = at + 1; i < n; ++i) {
-      for (std::size_t j = n; j < end; ++j) row(at)[j] -= row(at)[i] * row(i)[j];
-    }
-    const double scale = 1.0 / row(at)[at];
-    for (std::size_t j = n; j < end; ++j) row(at)[j] *= scale;
+  for (Eigen::Index at = n; at-- > 0;) {
+    for (Eigen::Index other = at + 1; other < n; ++other)
+      equations.row(at).tail<2>() -= equations(at, other) * equations.row(other).tail<2>();
+    equations.row(at).tail<2>() *= 1.0 / equations(at, at);
   }
   return sign;
 }
@@ -53,8 +42,8 @@ void Tangent::set(const Particle& p, bool core_flows) {
   Om_ = layout.core();
   Lam_ = Om_ + 1;
   residual_by_.resize(Om_, Om_ + 2);
-  Om_by_.assign(Om_ + 2, 0.0);
-  l_by_flow_.assign(p.size(), 0.0);
+  Om_by_.setZero(Om_ + 2);
+  l_by_flow_.setZero(p.size());
   pushes_by_flow_.setZero();
   for (std::size_t i = 0; i < p.size(); ++i) {
     const ClassState& c = p.classes[i];
@@ -69,7 +58,7 @@ void Tangent::set(const Particle& p, bool core_flows) {
   }
 
   moving_.clear();
-  pace_.assign(Om_, 0.0);
+  pace_.setZero(Om_);
   for (std::size_t i = 0; i < p.size(); ++i) {
     add_kinematics(p, i);
     moving_.push_back(i);

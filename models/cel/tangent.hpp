@@ -45,11 +45,11 @@ class Tangent {
   // A row holds derivatives by the unknowns up to the core, by the coverage Om, and by the flow Lam.
   std::size_t Om_ = 0, Lam_ = 0;  ///< last columns
   RowMatrix residual_by_;
-  std::vector<double> Om_by_;  ///< derivatives of Om by the unknowns, and by Lam in the last place
-  std::vector<double> l_by_flow_;
+  Eigen::VectorXd Om_by_;  ///< derivatives of Om by the unknowns, and by Lam in the last place
+  Eigen::VectorXd l_by_flow_;
   Eigen::Matrix3d pushes_by_flow_;  ///< at given forces
   std::vector<std::size_t> moving_;
-  std::vector<double> pace_;  ///< Lam per rate of an unknown
+  Eigen::VectorXd pace_;  ///< Lam per rate of an unknown
   RowMatrix equations_;
 };
 

@@ -1,15 +1,10 @@
-// The balance of forces on a free centre, and the influence of contacts on each other.
+// The balance of forces on a free centre.
 
 #include "cel/centre.hpp"
 
-#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include "cel/coupling.hpp"
-#include "elastic/nonlocal_coupling.hpp"
-#include "models/accuracy.hpp"
 
 namespace monograin::cel::centre_test {
 namespace {
@@ -53,33 +48,6 @@ TEST(CelCentre, LeavesNoRoundOffOfLargeForcesAcrossTheirLine) {
   const std::vector<double> forces{0.7, 0.7, 0.0};
   centre.choose_balance(forces);
   EXPECT_EQ(centre.net_force(Vector3d::Zero(), forces), Vector3d::Zero());
-}
-
-TEST(CelCoupling, IsSymmetricAndThatOfTheSphereOnAFreshSurface) {
-  const double nu = 0.3;
-  const std::vector<ContactClass> classes = walls({{0, 0, 1}, {0, 0, -1}, {1, 0, 0.3}});
-  const std::vector<Coupling> couplings = couplings_of(nu, classes);
-  ASSERT_EQ(couplings.size(), 9u);
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      EXPECT_LE(relative_error(couplings[3 * i + j].G(1.1, 0.9), couplings[3 * j + i].G(1.1, 0.9)), 1e-14);
-      if (i == j) continue;
-      const double theta = nonlocal::angle_between(classes[i].normals[0], classes[j].normals[0]);
-      EXPECT_LE(relative_error(couplings[3 * i + j].G(1.0, 1.0), nonlocal::sphere_influence(nu, theta)), 1e-13);
-    }
-    EXPECT_GT(couplings[4 * i].G(1.0, 1.0), 0.0);
-    // Coverage takes from neighbours only, dents add to walls that are parallel only.
-    EXPECT_NEAR(couplings[4 * i].by_shade(1.0), 0.0, 1e-15);
-  }
-}
-
-TEST(CelCoupling, HasItsDerivatives) {
-  for (const Coupling& at : couplings_of(0.2, walls({{0, 0, 1}, {1, 0, 0.3}, {1, 1, -1}}))) {
-    const double by_root = central_difference([&](double x) { return at.G(x, 0.8); }, 1.3, 0.1);
-    const double by_shade = central_difference([&](double x) { return at.G(1.3, x); }, 0.8, 0.1);
-    EXPECT_NEAR(at.by_root(0.8), by_root, 1e-14);
-    EXPECT_NEAR(at.by_shade(1.3), by_shade, 1e-14);
-  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One contact of an elastic-plastic particle by itself: independently computed values, derivatives, limits.
+// Contacts of an elastic-plastic particle: independently computed values, derivatives, limits.
 
 #include "cel/contact_law.hpp"
 
@@ -368,6 +368,41 @@ TEST(CelAdvance, IsAsFarAsTheCoreShrinksAndFurtherThanItBulges) {
   EXPECT_NEAR(advance_of(-0.5).c_l, -1.0, 1e-4);
   EXPECT_NEAR(advance_of(0.5).c_l, -k::chi, 1e-4);
   EXPECT_EQ(advance_of(0.0).c_l, -0.5 * (1.0 + k::chi));
+}
+
+// --- influence of contacts on each other
+
+std::vector<ContactClass> single_walls(const std::vector<Eigen::Vector3d>& normals) {
+  std::vector<ContactClass> classes;
+  for (const Eigen::Vector3d& normal : normals) classes.push_back({.name = "wall", .normals = {normal.normalized()}});
+  return classes;
+}
+
+TEST(CelCoupling, IsSymmetricAndThatOfTheSphereOnAFreshSurface) {
+  const double nu = 0.3;
+  const std::vector<ContactClass> classes = single_walls({{0, 0, 1}, {0, 0, -1}, {1, 0, 0.3}});
+  const std::vector<Coupling> couplings = couplings_of(nu, classes);
+  ASSERT_EQ(couplings.size(), 9u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      EXPECT_LE(relative_error(couplings[3 * i + j].G(1.1, 0.9), couplings[3 * j + i].G(1.1, 0.9)), 1e-14);
+      if (i == j) continue;
+      const double theta = nonlocal::angle_between(classes[i].normals[0], classes[j].normals[0]);
+      EXPECT_LE(relative_error(couplings[3 * i + j].G(1.0, 1.0), nonlocal::sphere_influence(nu, theta)), 1e-13);
+    }
+    EXPECT_GT(couplings[4 * i].G(1.0, 1.0), 0.0);
+    // Coverage takes from neighbours only, dents add to walls that are parallel only.
+    EXPECT_NEAR(couplings[4 * i].by_shade(1.0), 0.0, 1e-15);
+  }
+}
+
+TEST(CelCoupling, HasItsDerivatives) {
+  for (const Coupling& at : couplings_of(0.2, single_walls({{0, 0, 1}, {1, 0, 0.3}, {1, 1, -1}}))) {
+    const double by_root = central_difference([&](double x) { return at.G(x, 0.8); }, 1.3, 0.1);
+    const double by_shade = central_difference([&](double x) { return at.G(1.3, x); }, 0.8, 0.1);
+    EXPECT_NEAR(at.by_root(0.8), by_root, 1e-14);
+    EXPECT_NEAR(at.by_shade(1.3), by_shade, 1e-14);
+  }
 }
 
 }  // namespace

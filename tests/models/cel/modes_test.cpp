@@ -1,6 +1,6 @@
 // Guards and modes of a coupled elastic-plastic particle, and the linear equations behind its motion.
 
-#include "cel/guards.hpp"
+#include "cel/modes.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
@@ -9,11 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "cel/modes.hpp"
 #include "cel/newton.hpp"
 #include "system/limit.hpp"
 
-namespace monograin::cel::guards_test {
+namespace monograin::cel::modes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -98,10 +97,12 @@ TEST(CelGuards, ReportTheLimitThatAStateIsBeyond) {
   Pair now;
   now.drive(0.05, 0.3);
   now.decide();
-  EXPECT_FALSE(limit_met(now.p, now.motion, 0.0));
+  GuardSet guards;
+  guards.arm(now.p);
+  EXPECT_FALSE(guards.limit_met(now.p, now.motion, 0.0));
   now.y[now.p.layout().dent(0)] = 1.4;  // two dents that cover more than the law is fitted to
   now.motion.evaluate(now.p, 0.0, now.y);
-  const auto end = limit_met(now.p, now.motion, 0.0);
+  const auto end = guards.limit_met(now.p, now.motion, 0.0);
   ASSERT_TRUE(end);
   EXPECT_EQ(end->point.limit, Limit::surface_covered);
 }
@@ -129,4 +130,4 @@ TEST(CelElimination, RefusesSingularEquations) {
 }
 
 }  // namespace
-}  // namespace monograin::cel::guards_test
+}  // namespace monograin::cel::modes_test
