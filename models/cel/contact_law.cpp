@@ -131,7 +131,7 @@ Advance advance_of(double growth) noexcept {
 }
 
 std::vector<Coupling> couplings_of(double poisson_ratio, std::span<const ContactClass> classes) {
-  std::map<double, double> influences;  // of neighbours, each angle computed once
+  std::map<double, double> influences;  // by angle, each computed once
   const auto influence_at = [&](double angle) {
     const auto [at, is_new] = influences.try_emplace(std::round(angle / k_same_angle));
     if (is_new) at->second = nonlocal::sphere_influence(poisson_ratio, angle);

@@ -31,8 +31,8 @@ namespace monograin::cel {
 /// Indices of the unknowns in a state: own coordinate and dent of every class, centre, core.
 struct Layout {
   std::size_t classes = 0;
-  std::size_t directions = 0;  ///< of a free centre
-  std::size_t shapes = 0;      ///< of the core; 0: the core keeps its shape, and is no unknown
+  std::size_t directions = 0;  ///< free directions of the centre
+  std::size_t shapes = 0;      ///< shapes of the core; 0: it keeps its shape, and is no unknown
 
   [[nodiscard]] std::size_t dent(std::size_t i) const noexcept { return classes + i; }
   [[nodiscard]] bool is_dent(std::size_t place) const noexcept { return place >= classes && place < 2 * classes; }

@@ -15,6 +15,8 @@ constexpr std::array<string_view, 4> k_regime_words{"open", "elastic", "plastic"
 
 /// Margin to a fold below which the equations are hard to integrate.
 constexpr double k_hard_margin = 1e-3;
+/// Difference of a program's directions that is round-off.
+constexpr double k_alike_directions = 1e-9;
 /// Fitted range of the law.
 constexpr double k_least_modulus_over_yield = 6.25;
 constexpr double k_deepest = 0.5;
@@ -52,21 +54,12 @@ std::vector<Unknown> unknowns_of(const Particle& p, std::span<const ContactClass
   return unknowns;
 }
 
-/// Rates that the program prescribes: of displacements in the first column, of forces in the second.
-Eigen::ArrayX2d velocities(const Particle& p) {
+/// Rates that the program prescribes, over the largest: of displacements in the first column, of forces in the second.
+Eigen::ArrayX2d direction_of(const Particle& p) {
   Eigen::ArrayX2d rates = Eigen::ArrayX2d::Zero(p.size(), 2);
-  Eigen::Index i = 0;
-  for (const ClassState& c : p.classes) rates(i++, c.takes_force() ? 1 : 0) = c.drive.rate();
+  for (std::size_t i = 0; i < p.size(); ++i) rates(i, p.classes[i].takes_force() ? 1 : 0) = p.classes[i].drive.rate();
+  if (!p.is_at_rest()) rates /= rates.abs().maxCoeff();
   return rates;
-}
-
-/// True if a program goes on in the same direction, to within round-off, as where a step is cut in two.
-bool goes_on(const Eigen::ArrayX2d& before, const Eigen::ArrayX2d& after) {
-  constexpr double k_alike_directions = 1e-9;
-  const double a = before.abs().maxCoeff();
-  const double b = after.abs().maxCoeff();
-  if (a == 0.0 || b == 0.0) return a == b;
-  return (before / a - after / b).abs().maxCoeff() <= k_alike_directions;
 }
 
 }  // namespace
@@ -180,10 +173,12 @@ void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
 
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
   particle_.evaluate(y);
-  const Eigen::ArrayX2d before = velocities(particle_);
+  const Eigen::ArrayX2d before = direction_of(particle_);
   for (std::size_t i = 0; i < ramps.size(); ++i) take_up(i, ramps[i], y);
   particle_.forget();
-  if (!goes_on(before, velocities(particle_))) particle_.centre.rest_at(particle_.layout().centre_of(y));
+  // Where a step is only cut in two, the program goes on in the same direction, and the spring rests where it did.
+  const double turn = (direction_of(particle_) - before).abs().maxCoeff();
+  if (turn > k_alike_directions) particle_.centre.rest_at(particle_.layout().centre_of(y));
   solve(0.0, y);
   decide_mode(particle_, motion_, 0.0, y, {}, log);
   // Walls that touch the fresh particle are in contact from the start, without an event.

@@ -52,7 +52,7 @@ TEST(CelCoreLoad, IsTheForceTimesTheSupportDistanceBetweenTwoWalls) {
   for (const double l : {0.7, 1.0, 1.1}) {
     const Matrix3d C = Vector3d(1.0 / l, 1.0 / l, l * l).asDiagonal();
     const double force = 0.03;
-    // A wall that presses the core with w = 1/l, as far from the change of the advance.
+    // Far from the change of the advance, w = 1/l.
     const CoreLoad load = load_of(C, 0.1, 2.0 * force / l * dyad(Vector3d::UnitZ()));
     EXPECT_LE(relative_error(load.s, force * l), 1e-14);
     EXPECT_NEAR(load.T.trace(), 0.0, 1e-16);
