@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 
@@ -10,6 +9,7 @@
 #include "stress/checks.hpp"
 #include "stress/draw.hpp"
 #include "system/model.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::cel {
 namespace {
@@ -78,7 +78,6 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
 /// Upper estimate of displacement and force of a contact that first meets a condition: elastic, or at a mean pressure
 /// of Y, which is below that of every contact that flows (1.29 Y).
 Reach reach(const ModelInput& input, const Until& until) {
-  constexpr double k_infinity = std::numeric_limits<double>::infinity();
   const double radius = input.radius;
   const double modulus = composite_modulus(input.material("youngs_modulus"), input.material("poisson_ratio"));
   if (until.is_of(Quantity::force)) {

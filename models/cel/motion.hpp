@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cel/tangent.hpp"
-#include "system/undefined.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::cel {
 

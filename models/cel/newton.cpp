@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::cel {
 namespace {
@@ -21,7 +21,6 @@ constexpr double k_least_dent = 0.9;
 constexpr double k_solved = 1e-10;  ///< residual, over the largest displacement, up to which a state is a solution
 /// Residual, over the largest displacement, below which corrections only polish: round-off may make it larger.
 constexpr double k_stalled = 1e-14;
-constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -62,7 +61,6 @@ double Newton::correct(Particle& p, double xi, std::span<double> y, double bound
 }
 
 void Newton::solve(Particle& p, double xi, std::span<double> y) {
-  constexpr double k_infinity = std::numeric_limits<double>::infinity();
   residual_.setZero(p.layout().core(), 2);
   p.prescribe(xi, y);
   double largest = p.any_flows() ? p.material().Y : 0.0;
@@ -73,7 +71,7 @@ void Newton::solve(Particle& p, double xi, std::span<double> y) {
   // A free centre is corrected further: where only the weak spring holds it, a tiny net force still moves it far.
   const bool is_free = p.layout().directions > 0;
   int polished = 0;
-  for (int i = 0; i < k_most_corrections && (is_free || now > k_rounding * largest); ++i) {
+  for (int i = 0; i < k_most_corrections && (is_free || now > k_round_off * largest); ++i) {
     const bool is_polishing = now <= k_stalled * largest;
     const double next = correct(p, xi, y, is_polishing ? k_infinity : now);
     if (!(next < now) && (!is_polishing || !is_free)) {
@@ -85,7 +83,7 @@ void Newton::solve(Particle& p, double xi, std::span<double> y) {
     for (std::size_t j = 0; j < p.layout().core(); ++j) {
       if (!p.layout().is_dent(j)) correction = std::max(correction, std::abs(correction_(j, 0)));
     }
-    if (is_polishing && (correction <= k_rounding * largest || ++polished == k_most_polishings)) break;
+    if (is_polishing && (correction <= k_round_off * largest || ++polished == k_most_polishings)) break;
   }
   p.evaluate(y);
   const bool takes_force = std::ranges::any_of(p.classes, &ClassState::takes_force);

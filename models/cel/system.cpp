@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "system/resolution.hpp"
+
 namespace monograin::cel {
 namespace {
 
@@ -15,8 +17,6 @@ constexpr std::array<string_view, 4> k_regime_words{"open", "elastic", "plastic"
 
 /// Margin to a fold below which the equations are hard to integrate.
 constexpr double k_hard_margin = 1e-3;
-/// Difference of a program's directions that is round-off.
-constexpr double k_alike_directions = 1e-9;
 /// Fitted range of the law.
 constexpr double k_least_modulus_over_yield = 6.25;
 constexpr double k_deepest = 0.5;
@@ -178,7 +178,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   particle_.forget();
   // Where a step is only cut in two, the program goes on in the same direction, and the spring rests where it did.
   const double turn = (direction_of(particle_) - before).abs().maxCoeff();
-  if (turn > k_alike_directions) particle_.centre.rest_at(particle_.layout().centre_of(y));
+  if (turn > k_same_direction) particle_.centre.rest_at(particle_.layout().centre_of(y));
   solve(0.0, y);
   decide_mode(particle_, motion_, 0.0, y, {}, log);
   // Walls that touch the fresh particle are in contact from the start, without an event.

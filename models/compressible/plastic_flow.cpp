@@ -3,12 +3,11 @@
 #include <cmath>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::compressible {
 namespace {
 
-// Distance from the end of an elastic phase that counts as none (step coordinates).
-constexpr double k_round_off = 1e-13;
 // Cosine between the normal of the yield surface and the elastic rate of stress below which the two are perpendicular.
 constexpr double k_neutral = 1e-12;
 
@@ -62,7 +61,7 @@ bool continues(const Phase& phase, const Response& now) {
   const double direction = flow.cosine();
   if (std::abs(direction) > k_neutral) return direction > 0.0;
   const auto out = way_out(phase.parameters, now.at, now.p, now.s, flow.elastic.p, flow.elastic.s);
-  return out && out->t <= k_round_off;
+  return out && out->t <= k_same_instant;
 }
 
 }  // namespace monograin::compressible

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
 #include "compressible/segment_ends.hpp"
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::compressible {
 namespace {
@@ -18,12 +18,10 @@ namespace {
 constexpr double k_last_correction = 1e-11;
 // The correction after one of d is d^2 over the elastic strain. Where the elastic strain is tiny, d is the last
 // correction if the next one is below this.
-constexpr double k_strain_rounding = 1e-16;
+constexpr double k_strain_round_off = 1e-16;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
-// Round-off of f, over the shares that the stresses have in f.
-constexpr double k_rounding = 4.0 * std::numeric_limits<double>::epsilon();
-constexpr int k_most_corrections_of_rounding = 2;
+constexpr int k_most_corrections_of_round_off = 2;
 constexpr int k_most_corrections = 60;
 constexpr int k_most_halvings = 20;
 // Plastic strain within which every guess of an integrator lies, at any tolerance. A state that is farther from its
@@ -171,18 +169,18 @@ class ReturnMapping {
 
   /// True if the next correction would be round-off.
   [[nodiscard]] bool has_converged() {
-    const double last_correction = std::min(k_last_correction, std::sqrt(k_strain_rounding * elastic_strain_));
+    const double last_correction = std::min(k_last_correction, std::sqrt(k_strain_round_off * elastic_strain_));
     const bool is_small = !(correction_.length() >= last_correction);
-    if (!is_small && (!is_rounding() || ++corrections_of_rounding_ < k_most_corrections_of_rounding)) return false;
+    if (!is_small && (!is_round_off() || ++corrections_of_round_off_ < k_most_corrections_of_round_off)) return false;
     const bool is_on_surface = !has_caps_ || std::abs(now_.yield.f) < k_last_excess;
     return is_on_surface || ++small_corrections_ >= k_most_small_corrections;
   }
 
   /// True if f is round-off. Under prescribed stresses f may vary so little with phi that its round-off is a large
   /// strain.
-  [[nodiscard]] bool is_rounding() const {
+  [[nodiscard]] bool is_round_off() const {
     const Yield& at = now_.yield;
-    return std::abs(at.f) <= k_rounding * (std::abs(at.f_p * here_.p) + std::abs(at.f_s * here_.s));
+    return std::abs(at.f) <= k_round_off * (std::abs(at.f_p * here_.p) + std::abs(at.f_s * here_.s));
   }
 
   [[nodiscard]] bool is_near_guess() const {
@@ -207,7 +205,7 @@ class ReturnMapping {
   PlasticFlow last_;                     ///< flow where the last correction began; f is the part that it takes away
   std::optional<PlasticStrains> floor_;  ///< direction along the floor of a valley
   int small_corrections_ = 0;
-  int corrections_of_rounding_ = 0;
+  int corrections_of_round_off_ = 0;
   int halvings_ = 0;
 };
 

@@ -47,6 +47,7 @@
 #include "contacts/guards.hpp"
 #include "contacts/scales.hpp"
 #include "contacts/visible.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::contacts {
 
@@ -284,8 +285,7 @@ class IndependentContacts final : public HybridSystem {
 
   /// Judges the whole program, not the present state: every contact is below resolution when it is made.
   [[nodiscard]] std::optional<Difficulty> difficulty(double /*xi*/, std::span<const double> /*y*/) override {
-    constexpr double k_least_depth = 1e-12;
-    return scales_.reach <= k_least_depth ? std::optional(Difficulty::below_resolution) : std::nullopt;
+    return scales_.reach <= k_resolution ? std::optional(Difficulty::below_resolution) : std::nullopt;
   }
 
   [[nodiscard]] std::vector<Diagnostic> warnings() const override {

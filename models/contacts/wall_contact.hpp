@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -12,6 +11,7 @@
 
 #include "contacts/wall_drive.hpp"
 #include "system/hybrid_system.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::contacts {
 
@@ -139,7 +139,6 @@ class WallContact {
   /// True if the contact bears a force that is not round-off. A prescribed displacement has round-off, which must not
   /// press a wall that stands exactly where it meets the particle or parts from it.
   [[nodiscard]] bool bears(const Law& law, double d) const {
-    constexpr double k_round_off = 4.0 * std::numeric_limits<double>::epsilon();
     if (!touches_) return false;
     const double least = is_force_controlled() ? 0.0 : k_round_off * std::max(drive_.size(), largest_);
     return d - law.opening(branch_) > least;
@@ -177,12 +176,12 @@ class WallContact {
   /// @param carried      by how much a free centre has moved towards the wall
   /// @return displacement of the contact
   double take_up(const Law& law, WallDrive drive, double d, bool takes_force, double carried = 0.0) {
-    constexpr double k_round_off = 16.0 * std::numeric_limits<double>::epsilon();
+    constexpr double k_most_round_off = 4.0 * k_round_off;
     const bool is_by_force = drive.is_force_controlled();
     if (drive_.direction() == 0 && is_force_controlled() == is_by_force) drive.start_at(drive_.end());
     if (!touches_ && !is_by_force) {
       const double opening = law.opening(branch_);
-      if (std::abs(drive.start() + carried - opening) <= k_round_off * opening) drive.start_at(opening - carried);
+      if (std::abs(drive.start() + carried - opening) <= k_most_round_off * opening) drive.start_at(opening - carried);
     }
     if (!is_by_force) d = drive.start() + carried;
     double size = drive.size();
@@ -195,7 +194,7 @@ class WallContact {
       else if (slope > 0.0)
         size += law.force(branch_, d) / slope + std::abs(d);
     }
-    if (std::abs(drive.rate()) <= k_round_off * size) drive.rest();
+    if (std::abs(drive.rate()) <= k_most_round_off * size) drive.rest();
     // An integrated displacement has an error: the step begins at the exact displacement under its first force.
     const bool is_integrated_on = is_by_force && is_integrated(law);
     drive_ = drive;

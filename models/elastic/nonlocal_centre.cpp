@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "elastic/nonlocal_evasion.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -30,7 +31,7 @@ bool leaves_forces(Contacts& contacts, const Eigen::Matrix3d& projector, std::sp
     sum += contacts.weight(j) * at.forces[j];
     if (targets[j].is_force) push += contacts.weight(j) * targets[j].value * contacts.arm(j);
   }
-  return (projector * push).norm() > k_resolved * sum;
+  return (projector * push).norm() > k_round_off * sum;
 }
 
 }  // namespace

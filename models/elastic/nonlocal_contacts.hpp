@@ -31,6 +31,7 @@
 #include "elastic/nonlocal_law.hpp"
 #include "elastic/nonlocal_modes.hpp"
 #include "elastic/nonlocal_walls.hpp"
+#include "system/resolution.hpp"
 #include "system/walls.hpp"
 
 namespace monograin::nonlocal {
@@ -58,8 +59,6 @@ struct ContactState {
 
 // Tolerances that several searches share.
 
-/// Relative to the largest signed square: correction at which Newton's method has converged.
-inline constexpr double k_resolved = 4.0 * std::numeric_limits<double>::epsilon();
 /// Contacts shallower than this, over the walls' displacements or the deepest contact, do not show which ones will
 /// support the centre.
 inline constexpr double k_unloaded = 1e-6;

@@ -22,9 +22,9 @@ using std::numbers::pi;
 double unit_compliance(double nu) noexcept { return (1.0 + nu) / (4.0 * pi); }
 
 /// @param rounding  relative round-off of the integrand; no refinement gets below it
-double integral(const auto& f, double begin, double end, double rounding = 0.0) {
+double integral(const auto& f, double begin, double end, double round_off = 0.0) {
   // The tolerance bounds the error estimate of the embedded Gauss rule; the value is exact to round-off long before.
-  const double tolerance = std::max(1e-12, rounding);
+  const double tolerance = std::max(1e-12, round_off);
   return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, begin, end, 8, tolerance);
 }
 
@@ -88,7 +88,7 @@ double depth_of_edge(double x) noexcept { return std::sqrt(std::max(0.0, (1.0 - 
 /// 1/width points. None if more than k_most points would be needed.
 std::optional<double> integral_on_circle(const auto& f, double branch) {
   constexpr std::size_t k_most = 1024;
-  constexpr double k_rounding = 45.0;  // minus the error's logarithm, with room for f at its branch point
+  constexpr double k_round_off = 45.0;  // minus the error's logarithm, with room for f at its branch point
   static const auto k_squared_sines = [] {
     std::array<double, k_most / 2 + 1> squares{};
     for (std::size_t k = 0; k < squares.size(); ++k) {
@@ -99,8 +99,8 @@ std::optional<double> integral_on_circle(const auto& f, double branch) {
   }();
   const double width = 2.0 * std::atanh(std::sqrt(branch));
   std::size_t count = 8;
-  while (count < k_most && static_cast<double>(count) * width < k_rounding) count *= 2;
-  if (!(static_cast<double>(count) * width >= k_rounding)) return std::nullopt;
+  while (count < k_most && static_cast<double>(count) * width < k_round_off) count *= 2;
+  if (!(static_cast<double>(count) * width >= k_round_off)) return std::nullopt;
   double sum = 0.0;
   for (std::size_t k = 0; k <= count / 2; ++k) {
     const double square = k_squared_sines[k * (k_most / count)];
@@ -146,13 +146,13 @@ double edge_influence(bool is_projected, double nu, double theta, double x) {
   }
   // The length of eq. A.10 is |sin(phi)| at theta = pi/2: the halves are smooth, the whole is not.
   // Displacements at the edge and in the middle differ by a share of the order of x, which round-off limits.
-  const double rounding = 64.0 * std::numeric_limits<double>::epsilon() / x;
+  const double round_off = 64.0 * std::numeric_limits<double>::epsilon() / x;
   const auto around = [&](double phi) {
     const double half = std::sin(0.5 * phi);
     return outward(half * half);
   };
   return unit_compliance(nu) / pi *
-         (integral(around, 0.0, 0.5 * pi, rounding) + integral(around, 0.5 * pi, pi, rounding));
+         (integral(around, 0.0, 0.5 * pi, round_off) + integral(around, 0.5 * pi, pi, round_off));
 }
 
 }  // namespace

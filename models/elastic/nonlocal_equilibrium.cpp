@@ -7,13 +7,14 @@
 #include <string>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
 
 constexpr double k_least_step = 1e-13;  // of the path to a state that Newton's method does not find at once
 constexpr int k_most_steps = 1000;      // on that path, rejected ones included
-constexpr int k_most_roundings = 20;    // times that the path's end balances but for forces of round-off
+constexpr int k_most_round_offs = 20;   // times that the path's end balances but for forces of round-off
 constexpr int k_most_sinking_steps = 100;
 constexpr double k_past_balance = 0.5;  // slope of the energy past its minimum on a step, over the slope at the start
 
@@ -24,15 +25,15 @@ constexpr double k_no_contact = 5e-7;
 
 /// True if the net force is no larger than the resolution of s makes it. Idle contacts are no deeper than round-off,
 /// and their forces need not balance.
-bool is_balanced_but_for_rounding(Contacts& contacts, std::span<const double> y) {
+bool is_balanced_but_for_round_off(Contacts& contacts, std::span<const double> y) {
   const Evaluation& at = contacts.evaluate(y);
   double widest = 0.0;
   for (std::size_t j = 0; j < contacts.class_count(); ++j) widest = std::max(widest, std::abs(y[j]));
-  const double rounding = k_resolved * widest;
+  const double round_off = k_round_off * widest;
   double unresolved = 0.0;
   for (std::size_t j = 0; j < contacts.class_count(); ++j) {
     unresolved += contacts.weight(j) *
-                  (contacts.composite_modulus() * contacts.law().at(rounding).force + at.stiffness[j] * rounding);
+                  (contacts.composite_modulus() * contacts.law().at(round_off).force + at.stiffness[j] * round_off);
   }
   return !(contacts.net_force(at.forces).array().abs() > unresolved).any();
 }
@@ -94,7 +95,7 @@ void EquilibriumSearch::approach_in_steps(Contacts& contacts, std::span<double> 
 
   double done = 0.0;
   double step = 0.5;
-  int roundings = 0;
+  int round_offs = 0;
   for (int steps = 1; done < 1.0; ++steps) {
     const double next = std::min(1.0, done + step);
     set_targets_between(contacts, starts_, targets_, next, between_);
@@ -111,8 +112,8 @@ void EquilibriumSearch::approach_in_steps(Contacts& contacts, std::span<double> 
     step *= 0.5;
     // A path that also accepts short steps now and then may still not arrive.
     const bool may_go_on = step > k_least_step && steps < k_most_steps;
-    if (is_on_branch && is_balanced_but_for_rounding(contacts, trial_) &&
-        (++roundings == k_most_roundings || !may_go_on)) {
+    if (is_on_branch && is_balanced_but_for_round_off(contacts, trial_) &&
+        (++round_offs == k_most_round_offs || !may_go_on)) {
       std::ranges::copy(trial_, state_.begin());
       break;
     }
@@ -159,12 +160,12 @@ bool EquilibriumSearch::sink_to_balance(Contacts& contacts, std::span<double> y)
   auto net = net_at(place);
   for (int step = 0; net && step < k_most_sinking_steps; ++step) {
     Eigen::Vector3d move = newton_.step_to_balance(contacts, *net);
-    if (move.norm() <= k_resolved * size) break;
+    if (move.norm() <= k_round_off * size) break;
     move *= std::min(1.0, size / move.norm());
     const double power = move.dot(*net);
     // A step is halved if there is no state at its end, or if it goes too far past the balance.
     auto next = net_at(place + move);
-    for (; !(next && move.dot(*next) <= -k_past_balance * power) && move.norm() > k_resolved * size;
+    for (; !(next && move.dot(*next) <= -k_past_balance * power) && move.norm() > k_round_off * size;
          next = net_at(place + move)) {
       move *= 0.5;
     }

@@ -13,10 +13,6 @@ namespace {
 // Margin at which a run ends. It goes like the root of the distance from the limit: a run ends 1e-10 R0 before the
 // limit.
 constexpr double k_least_margin = 1e-5;
-// Walls whose angle is this near to pi never meet on the surface [rad].
-constexpr double k_opposite = 1e-9;
-// Difference of angles that is round-off [rad].
-constexpr double k_same_angle = 1e-9;
 
 int as_int(std::size_t index) noexcept { return static_cast<int>(index); }
 std::size_t index_of(const Guard& guard) noexcept { return static_cast<std::size_t>(std::max(0, guard.index)); }
@@ -29,8 +25,8 @@ std::vector<double> meeting_angles(const ContactClass& first, const ContactClass
     for (std::size_t n = is_one ? m + 1 : 0; n < second.normals.size(); ++n) {
       const double angle = angle_between(first.normals[m], second.normals[n]);
       const bool is_known =
-          std::ranges::any_of(angles, [&](double other) { return std::abs(other - angle) < k_same_angle; });
-      if (!is_known && angle < std::numbers::pi - k_opposite) angles.push_back(angle);
+          std::ranges::any_of(angles, [&](double other) { return std::abs(other - angle) < k_same_direction; });
+      if (!is_known && angle < std::numbers::pi - k_same_direction) angles.push_back(angle);
     }
   }
   return angles;
@@ -120,7 +116,7 @@ void GuardSet::arm_impingement(const Particle& p) {
 /// Arms the guards that stop an integrator next to the end of a force that bears a free centre.
 void GuardSet::arm_ends_of_forces(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.is_loaded(i) || p.end_of_force(i) == k_nowhere) continue;
+    if (!p.is_loaded(i) || p.end_of_force(i) == k_infinity) continue;
     Guard& guard = add(k_force_ends, as_int(i), -1, "force-ends");
     guard.is_silent = guard.is_exact = true;
   }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -18,8 +17,6 @@ namespace monograin::nonlocal {
 namespace {
 
 using std::string_view;
-
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 constexpr std::array k_material{
     QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},

@@ -5,11 +5,12 @@
 #include <limits>
 #include <numeric>
 
+#include "system/resolution.hpp"
+
 namespace monograin::nonlocal {
 namespace {
 
 constexpr double k_margin_tolerance = 1e-14;
-constexpr double k_rounding = std::numeric_limits<double>::epsilon();  // least pivot; entries are of order one
 constexpr int k_most_quotients = 6;      // Rayleigh quotients; each cubes the error of the mode, two are usual
 constexpr double k_no_coupling = 1e-13;  // coupling that counts as none, over the largest one
 
@@ -27,7 +28,7 @@ double eliminate(Eigen::MatrixXd& matrix, bool to_the_end) noexcept {
     least = std::min(least, *pivot);
     if (!(least > 0.0)) {
       if (!to_the_end) break;
-      if (std::abs(*pivot) < k_rounding) *pivot = k_rounding;
+      if (std::abs(*pivot) < k_epsilon) *pivot = k_epsilon;
     }
     const double inverse = 1.0 / *pivot;
     const Eigen::Index rest = count - p;

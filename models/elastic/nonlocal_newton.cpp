@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/resolution.hpp"
+
 namespace monograin::nonlocal {
 namespace {
 
@@ -155,14 +157,14 @@ Newton::Correction Newton::correct_squares(const Goal& goal, std::span<double> y
 
 /// True for a correction that does not contract because it is round-off. Contacts that are shallow against the path of
 /// the centre carry the round-off of that path.
-bool Newton::is_rounding(const Contacts& contacts, const Goal& goal, const Correction& correction,
-                         std::span<const double> y) const {
+bool Newton::is_round_off(const Contacts& contacts, const Goal& goal, const Correction& correction,
+                          std::span<const double> y) const {
   double length = 0.0;
   for (std::size_t j = 0; j < goal.targets.size(); ++j) {
     if (goal.targets[j].is_force) continue;
     length = std::max({length, std::abs(goal.targets[j].value), std::abs(contacts.lift(j, at_.forces, y))});
   }
-  return correction.largest <= std::max(k_stagnation * correction.scale, k_resolved * length);
+  return correction.largest <= std::max(k_stagnation * correction.scale, k_round_off * length);
 }
 
 bool Newton::solve(const Contacts& contacts, const Goal& goal, std::span<double> y) {
@@ -180,8 +182,8 @@ bool Newton::solve(const Contacts& contacts, const Goal& goal, std::span<double>
     const Correction correction = correct_squares(goal, y);
     // The remaining error is at most one further contraction of this correction.
     const double contraction = iteration > 0 ? std::min(correction.largest / last, 1.0) : 1.0;
-    if (correction.largest * contraction <= k_resolved * correction.scale) return true;
-    if (!is_free_step && contraction > k_contraction) return is_rounding(contacts, goal, correction, y);
+    if (correction.largest * contraction <= k_round_off * correction.scale) return true;
+    if (!is_free_step && contraction > k_contraction) return is_round_off(contacts, goal, correction, y);
     last = correction.largest;
   }
   return false;

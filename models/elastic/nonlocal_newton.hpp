@@ -67,8 +67,8 @@ class Newton {
   void balance_centre(const Contacts& contacts, const Goal& goal, const Search& search, bool may_find_more,
                       std::span<double> y);
   [[nodiscard]] Correction correct_squares(const Goal& goal, std::span<double> y);
-  [[nodiscard]] bool is_rounding(const Contacts& contacts, const Goal& goal, const Correction& correction,
-                                 std::span<const double> y) const;
+  [[nodiscard]] bool is_round_off(const Contacts& contacts, const Goal& goal, const Correction& correction,
+                                  std::span<const double> y) const;
 
   Tangent tangent_;
   Evaluation at_;

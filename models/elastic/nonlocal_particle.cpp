@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "contacts/side_ahead.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -54,7 +55,7 @@ void Particle::take_up(std::span<const Ramp> ramps, std::span<double> y) {
 
 double Particle::end_of_force(std::size_t i) const noexcept {
   const Ramp& ramp = ramps_[i];
-  return ramp.start > 0.0 && ramp.end <= 0.0 ? ramp.start / (ramp.start - ramp.end) : k_nowhere;
+  return ramp.start > 0.0 && ramp.end <= 0.0 ? ramp.start / (ramp.start - ramp.end) : k_infinity;
 }
 
 void Particle::require_pressing_walls(double xi) const {
@@ -210,7 +211,7 @@ void Particle::residual(double xi, std::span<const double> y, std::span<const do
 }
 
 void Particle::branch_reach(std::span<const double> y, std::span<double> reach) const {
-  std::ranges::fill(reach, k_nowhere);
+  std::ranges::fill(reach, k_infinity);
   for (std::size_t i = 0; i < size(); ++i) {
     const double square = is_loaded(i) ? square_of(y[i]) : y[i];
     reach[i] = contacts_.branch_reach(i, square);

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,17 +15,15 @@
 #include "elastic/nonlocal_setup.hpp"
 #include "elastic/nonlocal_support.hpp"
 #include "system/difficulty.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 
-/// Distance in xi ahead of an instant at which its mode is read.
-inline constexpr double k_ahead = 1e-9;
 /// Distance in xi from the end of a force that bears a free centre at which an integrator stops.
 inline constexpr double k_end_of_force = 1e-8;
 /// Gap up to which a wall counts as just lost, over the touch tolerance. A contact is lost at that tolerance; the rest
 /// allows for the error of that event.
 inline constexpr double k_just_lost = 2.0;
-inline constexpr double k_nowhere = std::numeric_limits<double>::infinity();
 
 /// State of the classes between two transitions.
 struct Mode {
@@ -57,7 +54,7 @@ class Particle {
   void take_up(std::span<const Ramp> ramps, std::span<double> y);
   [[nodiscard]] const Ramp& ramp(std::size_t i) const noexcept { return ramps_[i]; }
   [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return takes_force(ramps_[i]); }
-  /// The xi at which a force falls to zero in this step; k_nowhere if it does not.
+  /// The xi at which a force falls to zero in this step; k_infinity if it does not.
   [[nodiscard]] double end_of_force(std::size_t i) const noexcept;
   /// @throws DomainError if a wall would have to pull just after an instant
   void require_pressing_walls(double xi) const;

@@ -6,6 +6,7 @@
 
 #include "contacts/centre/centre_lines.hpp"
 #include "contacts/columns.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -21,8 +22,6 @@ constexpr double k_guard_at_touch = 1e-12;
 // Largest contact radius over R0 with all terms. Approach and force depend on 1 - a, of which a has ever fewer digits;
 // beyond this radius, the approach has less than eleven.
 constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
-// A program whose deepest contact is no deeper than this, over R0, works with round-off of lengths.
-constexpr double k_least_depth = 1e-12;
 // Contacts shallower than this, over the deepest, support a free centre too softly for an integrator.
 constexpr double k_idle = 1e-6;
 
@@ -40,7 +39,7 @@ double greatest_depth(const Settings& settings, const Contacts& contacts) {
 Scales scales_of(const Settings& settings, std::span<const ContactClass> classes, const Contacts& contacts) {
   Scales scales;
   double reach = greatest_depth(settings, contacts);
-  scales.is_shallow = reach > 0.0 && reach <= k_least_depth;
+  scales.is_shallow = reach > 0.0 && reach <= k_resolution;
   for (const ContactClass& c : classes) reach = std::max(reach, c.gap / settings.initial_radius);
   if (!(reach > 0.0)) reach = 1.0;
   // A program may prescribe any displacement, but before R0 a wall is at the centre, or a contact as wide as the

@@ -5,6 +5,7 @@
 
 #include "elastic/nonlocal_evasion.hpp"
 #include "reaction_cone.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -38,7 +39,7 @@ bool may_balance(const Contacts& contacts, std::span<const Target> targets, std:
       push += push_of(j);
       sum += contacts.weight(j) * targets[j].value;
     }
-    return push.norm() <= k_resolved * sum || in_reaction_cone(push, others);
+    return push.norm() <= k_round_off * sum || in_reaction_cone(push, others);
   };
   if (!can_be_borne(false)) return false;
   others.insert(others.end(), unloading.begin(), unloading.end());

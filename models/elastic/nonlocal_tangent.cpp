@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "system/resolution.hpp"
+
 namespace monograin::nonlocal {
 
 bool carries_no_load(std::span<const double> stiffness) noexcept {
@@ -45,7 +47,7 @@ Eigen::Vector3d Tangent::step_to_balance(const Contacts& contacts, std::span<con
   }
   // The matrix is symmetric unless stiffnesses have been lent. Its unsupported directions are the same from both sides.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (hold + hold.transpose()));
-  const double least = k_least_hold * solver.eigenvalues().cwiseAbs().maxCoeff();
+  const double least = k_no_stiffness * solver.eigenvalues().cwiseAbs().maxCoeff();
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d direction = solver.eigenvectors().col(k);

@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "elastic/nonlocal_contacts.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
-
-/// Stiffness that supports the centre in a direction, over the greatest.
-inline constexpr double k_least_hold = 1e-12;
 
 /// True where all stiffnesses vanish together, as at first touch. Callers of Tangent::move_centre() then substitute
 /// equal ones, under which the centre moves as between equal contacts.
@@ -36,7 +34,7 @@ template <class Stiffness>
       direction = along.normalized();
     }
     stiffest = std::max(stiffest, hold);
-    if (!(hold > k_least_hold * stiffest)) break;
+    if (!(hold > k_no_stiffness * stiffest)) break;
     projector -= direction * direction.transpose();
   }
   return projector;

@@ -12,7 +12,7 @@ using std::numbers::pi;
 
 // Least slope of an edge's equilibrium, over A/b: the slope goes with the root of the distance from pull-off, and
 // displacements are rounded.
-constexpr double k_root_of_rounding = 5e-9;
+constexpr double k_root_of_round_off = 5e-9;
 constexpr int k_most_corrections = 100;  // a double root at pull-off only halves the error each time
 
 /// Edge at the radius a on a profile; on the ellipse a = b sin(theta).
@@ -69,7 +69,7 @@ double slope(const Indenter& indenter, double stretch, double xi, const ProfileE
 /// Slope of an edge's equilibrium under displacement control (xi = 1). It is zero at pull-off, and no less here than
 /// its round-off.
 double slope_off_pull_off(const Indenter& indenter, double stretch, const ProfileEdge& edge) noexcept {
-  const double least = k_root_of_rounding * indenter.height / indenter.half_width;
+  const double least = k_root_of_round_off * indenter.height / indenter.half_width;
   return std::max(least, slope(indenter, stretch, 1.0, edge));
 }
 
@@ -160,7 +160,7 @@ Indenter unloading_indenter(const UnloadingShape& shape) noexcept {
 
 double profile_height(const Indenter& indenter, double a) noexcept { return height_at(indenter, edge_at(indenter, a)); }
 
-double profile_rounding(const Indenter& indenter, double a) noexcept {
+double profile_round_off(const Indenter& indenter, double a) noexcept {
   constexpr double round_off = 4.0 * std::numeric_limits<double>::epsilon();
   const ProfileEdge edge = edge_at(indenter, a);
   // At the very end of the ellipse the slope is unbounded: there the height is uncertain by the root of the round-off.

@@ -31,7 +31,7 @@ struct Indenter {
 /// Height g(a) of the relaxed profile, for a in [0, b] (eqs. 23, 28).
 [[nodiscard]] double profile_height(const Indenter& indenter, double a) noexcept;
 /// Round-off of g(a) due to that of a and b; large near the end of the ellipse, which is steep.
-[[nodiscard]] double profile_rounding(const Indenter& indenter, double a) noexcept;
+[[nodiscard]] double profile_round_off(const Indenter& indenter, double a) noexcept;
 /// Contact radius without adhesion under delta_1D, where g(a) = delta_1D; 0 for delta_1D <= 0, b from A/2 on.
 [[nodiscard]] double free_contact_radius(const Indenter& indenter, double displacement_1d) noexcept;
 /// Force without adhesion at the contact radius a: 2 E* int_0^a (g(a) - g(x)) dx.

@@ -28,7 +28,7 @@ constexpr double k_farthest_saddle = 1e-2;
 constexpr double k_longer = 1.25;
 constexpr int k_most_sections = 40;
 // A step below this (over R0) that is not much shorter than the last one is round-off: the search has converged.
-constexpr double k_rounding_step = 1e-12;
+constexpr double k_round_off_step = 1e-12;
 // Softenings at a fold are equal if they differ by less than this share of their sum. The place of the centre there is
 // accurate to the root of the integration error.
 constexpr double k_alike = 1e-2;
@@ -89,7 +89,7 @@ double round_off_of(const Particle& p, const CentreStiffness& softest) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (supports_by_peeling(p, i)) softening += std::abs(softening_along(p, i, softest.direction));
   }
-  return std::sqrt(2.0 * softening * softest.direction.norm() * p.force_rounding());
+  return std::sqrt(2.0 * softening * softest.direction.norm() * p.force_round_off());
 }
 
 /// Orders two contacts that are otherwise equal by their normals, so that the result does not depend on the order of
@@ -115,7 +115,7 @@ class BalanceSearch {
     for (int iteration = 0; iteration < k_newton_limit && !is_stuck(); ++iteration) {
       error_ = p_.centre().force().norm();
       if (error_ == 0.0) return;
-      noise_ = p_.force_rounding();
+      noise_ = p_.force_round_off();
       const CentreVector step = newton_step();
       if (has_arrived(step.norm())) return;
       step_size_ = step.norm();
@@ -142,7 +142,7 @@ class BalanceSearch {
       throw DomainError(Limit::centre_not_held);
     }
     if (!(length >= 0.5 * step_size_)) return false;
-    if (length < k_rounding_step) return true;
+    if (length < k_round_off_step) return true;
     // Soft contacts reached from afar may need one more step of that length, back to where they only touch.
     return error_ <= noise_ && std::exchange(has_gone_back_, true);
   }
@@ -184,8 +184,8 @@ class BalanceSearch {
   /// peel, the search may also end beyond a fold, at a minimum of the net force.
   /// @throws std::domain_error if forces do not balance
   void require_balance() {
-    const double rounding = p_.force_rounding() + k_no_force * p_.magnitude_of_forces();
-    if (is_only_one_ ? is_stuck() : p_.centre().force().norm() <= rounding) return;
+    const double round_off = p_.force_round_off() + k_no_force * p_.magnitude_of_forces();
+    if (is_only_one_ ? is_stuck() : p_.centre().force().norm() <= round_off) return;
     if (std::abs(centre_stiffness(p_).value) < k_at_fold) throw DomainError(Limit::centre_fold);
     throw DomainError(Limit::no_solution, "the balance of forces on the free centre was not found");
   }
@@ -263,8 +263,8 @@ CentreStiffness centre_stiffness(Particle& p) {
 
 double centre_stiffness_guard(Particle& p) {
   const CentreStiffness softest = centre_stiffness(p);
-  const double rounding = std::min(round_off_of(p, softest), k_at_fold);
-  return softest.value - std::max(k_least_centre_stiffness, rounding);
+  const double round_off = std::min(round_off_of(p, softest), k_at_fold);
+  return softest.value - std::max(k_least_centre_stiffness, round_off);
 }
 
 void check_softening(const Particle& p) {

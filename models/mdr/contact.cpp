@@ -17,7 +17,7 @@ namespace monograin::mdr {
 namespace {
 
 // Share of a force that round-off may leave unbalanced at the overlap found for it: the contact area is a difference.
-constexpr double k_force_rounding = 1e-10;
+constexpr double k_force_round_off = 1e-10;
 
 using std::numbers::pi;
 
@@ -346,7 +346,7 @@ double plastic_overlap(const Material& material, double radius, double force, do
       continue;
     }
     // If the prescribed force exceeds the largest one, the search ends at the overlap of the largest one.
-    if (is_outside && missing > k_force_rounding * force) break;
+    if (is_outside && missing > k_force_round_off * force) break;
     return overlap;
   }
   throw DomainError(Limit::greatest_force);

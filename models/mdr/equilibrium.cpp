@@ -102,7 +102,7 @@ void grow(Particle& p, double xi, std::span<double> y) {
     const double size = std::max(std::abs(step), centre_step.norm());
     if (size < last_step) return;
     // A centre that soft contacts hold moves by more than round-off even where forces balance.
-    const bool is_balanced = std::abs(step) < k_least_step && p.centre().force().norm() <= p.force_rounding();
+    const bool is_balanced = std::abs(step) < k_least_step && p.centre().force().norm() <= p.force_round_off();
     if (size >= 0.5 * step_size && (size < k_least_step || is_balanced)) return;
     step_size = size;
   }

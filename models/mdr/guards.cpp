@@ -74,9 +74,9 @@ double edge_guard(const Particle& p, int kind, std::size_t i, double xi, double 
                         : follow_guard(branch.edge, now, p.law().adhesion());
 }
 
-double edge_rounding(const Particle& p, std::size_t i) {
+double edge_round_off(const Particle& p, std::size_t i) {
   const Frame at = p.branch(i).frame(p.law(), p.at().r, p.contact(i).overlap);
-  return k_same_overlap + profile_rounding(at.indenter, p.branch(i).edge.radius) / at.by_overlap;
+  return k_same_overlap + profile_round_off(at.indenter, p.branch(i).edge.radius) / at.by_overlap;
 }
 
 void GuardSet::arm(Particle& p, const ContactCaps& caps, double xi, std::span<const double> y) {
@@ -296,7 +296,7 @@ double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, dou
     case k_tension_rises:
       return tension_guard(p, guard.kind, i, now);
     case k_follow:
-      return edge_guard(p, k_follow, i, xi, p.contact(i).overlap - edge_rounding(p, i));
+      return edge_guard(p, k_follow, i, xi, p.contact(i).overlap - edge_round_off(p, i));
     case k_peel:
     case k_pull_off:
       return edge_guard(p, guard.kind, i, xi, p.contact(i).overlap);

@@ -68,7 +68,7 @@ inline constexpr double k_least_distance = 1e-3;
 [[nodiscard]] double edge_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap);
 /// Round-off of the overlap at which a sticking edge follows again. An edge that has just come to stick leaves that
 /// overlap with the square of its displacement; subtracting this keeps round-off from firing the guard.
-[[nodiscard]] double edge_rounding(const Particle& p, std::size_t i);
+[[nodiscard]] double edge_round_off(const Particle& p, std::size_t i);
 
 /// Set of the guards that are alive until the next transition or the end of the step.
 class GuardSet {

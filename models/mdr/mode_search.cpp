@@ -211,8 +211,8 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
         // An edge that has just turned sticks at the verge of peeling and leaves it with the square of its
         // displacement. Round-off has fired the guard and would fire it again; setting the edge back prevents that.
         const Frame at = p_.branch(i).frame(p_.law(), p_.at().r, p_.contact(i).overlap);
-        const double rounding = edge_rounding(p_, i) * at.by_overlap;
-        p_.set_branch(i, p_.branch(i).with_edge(p_.branch(i).edge.set_back(at.indenter, rounding)));
+        const double round_off = edge_round_off(p_, i) * at.by_overlap;
+        p_.set_branch(i, p_.branch(i).with_edge(p_.branch(i).edge.set_back(at.indenter, round_off)));
         return false;
       }
       start_peeling(i, y, log);

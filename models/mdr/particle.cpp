@@ -95,7 +95,7 @@ const Evaluation& Particle::evaluated(double xi, std::span<const double> y) {
 
 void Particle::evaluate_contact(std::size_t i, double displacement, double r) {
   at_xi_ = k_nan;
-  force_rounding_.reset();
+  force_round_off_.reset();
   Instant& now = at_.contacts[i];
   now.displacement = displacement;
   now.overlap = displacement + r;
@@ -264,15 +264,15 @@ double Particle::magnitude_of_forces() const noexcept {
 /// Adds the round-off of forces to that of overlaps times stiffness, which idle contacts are too soft to balance. The
 /// round-off of an overlap is that of the lengths whose difference it is: R0, the path of the centre, or that of the
 /// wall towards it.
-double Particle::force_rounding() const {
-  if (force_rounding_) return *force_rounding_;
+double Particle::force_round_off() const {
+  if (force_round_off_) return *force_round_off_;
   constexpr double round_off = std::numeric_limits<double>::epsilon();
   double sum = magnitude_of_forces();
   for (std::size_t i = 0; i < size(); ++i) {
     const double length = std::max(at_.longest, std::abs(contact(i).position));
     sum += count(i) * branches_[i].unpeeled_stiffness(law(), at_.r, contact(i).contact) * length;
   }
-  return *(force_rounding_ = 4.0 * round_off * sum);
+  return *(force_round_off_ = 4.0 * round_off * sum);
 }
 
 /// True for a prescribed force that is round-off beside the others and that no contact supports. Its load on the centre

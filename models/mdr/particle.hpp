@@ -132,7 +132,7 @@ class Particle {
   /// Sum of the magnitudes of all wall forces.
   [[nodiscard]] double magnitude_of_forces() const noexcept;
   /// Largest net force on the centre that is round-off of forces that balance.
-  [[nodiscard]] double force_rounding() const;
+  [[nodiscard]] double force_round_off() const;
 
  private:
   void sum_up(double xi);
@@ -142,7 +142,7 @@ class Particle {
   /// Outdates cached results when drives, branches or walls change.
   void note_change() noexcept {
     ++revision_;
-    force_rounding_.reset();
+    force_round_off_.reset();
   }
 
   std::shared_ptr<const Setup> setup_;
@@ -154,7 +154,7 @@ class Particle {
   double at_xi_ = k_nan;
   std::vector<double> at_y_;
   std::uint64_t at_revision_ = 0;
-  mutable std::optional<double> force_rounding_{};  ///< cached, for the present contacts and branches
+  mutable std::optional<double> force_round_off_{};  ///< cached, for the present contacts and branches
 };
 
 }  // namespace monograin::mdr

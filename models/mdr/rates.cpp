@@ -51,8 +51,8 @@ double edge_rate(const Particle& p, std::size_t i, const Motion& motion) {
   if (is_being_made) overlap_speed = p.drive(i).rate();
   if (is_being_made || motion.growth == 0.0) {
     // If a free centre keeps up with the wall, the difference of their speeds is round-off, of either sign.
-    const double rounding = p.is_loaded(i) ? 0.0 : k_zero_guard * (std::abs(now.rate_by_time) + motion.centre.norm());
-    return overlap_speed > rounding ? 1.0 : overlap_speed < -rounding ? -1.0 : 0.0;
+    const double round_off = p.is_loaded(i) ? 0.0 : k_zero_guard * (std::abs(now.rate_by_time) + motion.centre.norm());
+    return overlap_speed > round_off ? 1.0 : overlap_speed < -round_off ? -1.0 : 0.0;
   }
   return p.branch(i).press_rate(p.law(), p.at().r, now.overlap, now.contact.contact_radius, overlap_speed,
                                 motion.growth);

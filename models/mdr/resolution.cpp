@@ -11,14 +11,14 @@ namespace {
 
 /// True if an overlap is below the resolution; cheaper than comparing it with resolution().
 bool is_below_resolution(const Particle& p, double overlap) {
-  return overlap < k_resolution || hertz_force(p.law().material.composite_modulus, 1.0, overlap) < p.force_rounding();
+  return overlap < k_resolution || hertz_force(p.law().material.composite_modulus, 1.0, overlap) < p.force_round_off();
 }
 
 }  // namespace
 
 double resolution(const Particle& p) {
   return std::max(k_resolution, elastic_overlap(ElasticProfile::parabola, p.law().material.composite_modulus, 1.0,
-                                                p.force_rounding()));
+                                                p.force_round_off()));
 }
 
 bool is_idle(const Particle& p, std::size_t i) {

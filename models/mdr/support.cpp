@@ -178,7 +178,7 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
   const CentreVector push = along * prescribed_push(p, 1.0);
   if (push.norm() <= least) return false;
   // Holds only where forces begin, at the start of a step: after any force, walls may have caught up with the centre.
-  if (xi > 0.0 || (along * prescribed_push(p, xi)).norm() > p.force_rounding()) return false;
+  if (xi > 0.0 || (along * prescribed_push(p, xi)).norm() > p.force_round_off()) return false;
   std::vector<CentreVector> normals;
   for (const IdleWall& wall : walls) normals.emplace_back(along * p.centre().direction(wall.contact));
   std::vector<CentreVector> units;
@@ -248,7 +248,7 @@ void check_support(Particle& p) {
   const CentreMatrix unconstrained = unconstrained_directions(p);
   const double left =
       std::max((unconstrained * prescribed_push(p, 0.0)).norm(), (unconstrained * prescribed_push(p, 1.0)).norm());
-  if (left > std::max(k_no_force * largest, p.force_rounding())) throw DomainError(Limit::centre_driven_away);
+  if (left > std::max(k_no_force * largest, p.force_round_off())) throw DomainError(Limit::centre_driven_away);
 }
 
 void balance_touch(Particle& p, std::size_t i, bool is_made, std::vector<Event>& log) {

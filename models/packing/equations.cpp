@@ -88,9 +88,9 @@ std::optional<IntegratedState> Equations::nearest(IntegratedState y) const {
     y.particle_strain += share * by_particles * particle_scale_;
     const double step = std::abs(share) * steepness;
     // Corrections that no longer shrink are round-off.
-    const bool is_rounding = step < k_noise && step > 0.5 * last;
+    const bool is_round_off = step < k_noise && step > 0.5 * last;
     last = step;
-    if (step <= k_resolution || is_rounding) return y;
+    if (step <= k_resolution || is_round_off) return y;
   }
   return std::nullopt;
 }

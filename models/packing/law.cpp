@@ -10,11 +10,11 @@
 #include <stdexcept>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::packing {
 namespace {
 
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr double k_least_room = 1e-5;  // least distance of Phi_J from 1
 // Samples of growing_branch(): from this far above Phi_J in equal ratios, then in equal steps; and one sample this far,
 // over Phi, before full plasticity.

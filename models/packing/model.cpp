@@ -10,6 +10,7 @@
 #include "packing/stress.hpp"
 #include "packing/system.hpp"
 #include "stress/checks.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::packing {
 namespace {
@@ -23,8 +24,6 @@ constexpr Range k_fraction_range{.lower = 0.0, .upper = 2.0, .lower_is_open = tr
 
 constexpr Parameters k_published{};
 constexpr double k_published_yield_stress = 0.4e6;
-// Share of a packing fraction within which two targets are one.
-constexpr double k_same_fraction = 1e-9;
 
 constexpr std::array<string_view, 2> k_couplings{"published", "consistent"};
 constexpr std::array<string_view, 4> k_regime_words{"unjammed", "elastic", "elastic-plastic", "fully-plastic"};
@@ -161,7 +160,7 @@ void check_only_compaction(const Law& law, double initial, const ModelInput& inp
     const PlannedStep& step = input.program[k];
     if (!step.first) continue;
     const double next = destinations.of(*step.first, least);
-    if (next < least * (1.0 - k_same_fraction)) {
+    if (next < least * (1.0 - k_same_number)) {
       found.push_back({"",
                        "the packing goes back from packing fraction " + std::to_string(least) + " to " +
                            std::to_string(next) +

@@ -13,8 +13,6 @@ namespace {
 
 // Share of the branch's end by which a packing has passed it.
 constexpr double k_margin = 1e-6;
-// Relative difference of the controlled quantity that is round-off.
-constexpr double k_same = 1e-12;
 
 // Indices of the unknowns.
 constexpr std::size_t k_particles = 0;
@@ -62,7 +60,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   ramp_ = ramps[0];
   if (ramp_.control != branch_.control()) branch_ = ControlledBranch(branch_.law(), ramp_.control);
   if (branch_.law().given.plasticity && ramp_.direction() < 0) {
-    if (ramp_.start - ramp_.end > k_same * ramp_.start) {
+    if (ramp_.start - ramp_.end > k_same_value * ramp_.start) {
       throw DomainError(Limit::no_unloading_law);
     }
     ramp_.end = ramp_.start;
@@ -91,7 +89,8 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
 
 /// Throws if the program presses on a packing without pores.
 void System::require_pores(std::span<const double> y) const {
-  const bool is_pressed_on = ramp_.direction() > 0 || ramp_.value(0.0) > branch_.range().greatest * (1.0 + k_same);
+  const bool is_pressed_on =
+      ramp_.direction() > 0 || ramp_.value(0.0) > branch_.range().greatest * (1.0 + k_same_value);
   if (is_jammed() && is_pressed_on && y[k_fraction] >= 1.0) throw DomainError(Limit::pores_closed);
 }
 

@@ -144,14 +144,14 @@ HollomonMaterial fit_hollomon(const LudwikMaterial& material, double greatest_st
     const double scaled = strength * std::exp(mu * log_range) / (2.0 * mu + 1.0);
     return log_range * (plain - scaled) + logarithmic + scaled / (2.0 * mu + 1.0);
   };
-  const double rounding = 1e-13 * strength;  // ideal plasticity has its root at 0, linear hardening at 1
+  const double round_off = 1e-13 * strength;  // ideal plasticity has its root at 0, linear hardening at 1
   const double at_none = condition(0.0);
   const double at_linear = condition(1.0);
-  if (at_none < -rounding || at_linear > rounding) {
+  if (at_none < -round_off || at_linear > round_off) {
     throw std::domain_error("no exponent in [0, 1] fits best with the strength Y + K = " + number_text(strength) +
                             " up to a strain of " + number_text(greatest_strain));
   }
-  const double mu = at_none <= rounding ? 0.0 : at_linear >= -rounding ? 1.0 : root(condition);
+  const double mu = at_none <= round_off ? 0.0 : at_linear >= -round_off ? 1.0 : root(condition);
   return {.strength = strength, .exponent = mu, .residual = moments.residual(strength, mu)};
 }
 

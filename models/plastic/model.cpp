@@ -214,9 +214,8 @@ constexpr std::array<string_view, 6> k_hardening_domain{
 // --- from a scenario to the law
 
 // Range of the search for the displacement that meets a condition: from this share of the limit, where pressures may be
-// infinite, down to this depth over R0, at which contacts are below resolution.
+// infinite, down to the resolution.
 constexpr double k_deepest = 0.9;
-constexpr double k_shallowest = 1e-12;
 // Bisections that refine the displacement: next to the limit, work may grow by orders over a tenth of the path.
 constexpr int k_bisections = 20;
 
@@ -321,7 +320,7 @@ struct Functions {
     };
     double first = 0.0;
     // Pressures fall again at greater depth: the search goes on to the least displacement that meets the condition.
-    for (double x = k_deepest * limit(law); x > 0.5 * k_shallowest; x *= 0.5) {
+    for (double x = k_deepest * limit(law); x > 0.5 * k_resolution; x *= 0.5) {
       if (is_met(x)) first = x;
     }
     if (first == 0.0) return {k_infinity, k_infinity};

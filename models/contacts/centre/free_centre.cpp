@@ -228,8 +228,7 @@ bool FreeCentre::clear_all_but(std::optional<std::size_t> left_out, const Centre
   Matrix free = Matrix::Zero();
   free.topLeftCorner(dimension(), dimension()).setIdentity();
   const auto overlaps = [](const Obstacle& wall, const Vector& at) { return !(wall.overlap(at) <= k_round_off); };
-  return clear(to_clear_, free - held_directions_ * held_directions_.transpose(), k_no_direction, overlaps,
-               c);
+  return clear(to_clear_, free - held_directions_ * held_directions_.transpose(), k_no_direction, overlaps, c);
 }
 
 /// Component of a mean normal across the directions in which contacts bear.

@@ -45,13 +45,13 @@ std::vector<double> dents_of(const Material& material) {
 }
 
 /// Surroundings of a contact: support distance of the core under it, and coverage factor.
-struct Surroundings {
+struct Surround_offs {
   double l, m;
 };
-constexpr Surroundings k_surroundings[] = {{1.0, 1.0}, {0.7, 0.95}, {1.2, 1.3}};
+constexpr Surround_offs k_surroundings[] = {{1.0, 1.0}, {0.7, 0.95}, {1.2, 1.3}};
 
 /// Elastic displacements from a light touch to the limit force, and a little beyond.
-std::vector<double> displacements_of(const Material& material, const Dent& dent, const Surroundings& at) {
+std::vector<double> displacements_of(const Material& material, const Dent& dent, const Surround_offs& at) {
   const double H = contact_at(material, dent, at.l, at.m, 0.0).H;
   const double limit = contact_under(material, dent, at.l, at.m, H).u;
   return {1e-6 * limit, 0.03 * limit, 0.4 * limit, limit, 1.1 * limit};
@@ -65,7 +65,7 @@ void for_all_contacts(const Check& check) {
     dents.push_back(material.a_Y);
     for (const double zeta : dents) {
       const Dent dent = dent_of(material, zeta);
-      for (const Surroundings& at : k_surroundings) {
+      for (const Surround_offs& at : k_surroundings) {
         for (const double u : displacements_of(material, dent, at)) {
           SCOPED_TRACE(::testing::Message() << "E/Y = " << 1.0 / material.Y << ", zeta/a_Y = " << zeta / material.a_Y
                                             << ", l = " << at.l << ", m = " << at.m << ", u = " << u);
@@ -149,8 +149,8 @@ TEST(CelDent, OfAFreshSurfaceIsNone) {
     EXPECT_LE(relative_error(dent.q, 1.0 / 3.0), 4 * k_epsilon);
     EXPECT_LE(relative_error(dent.root_Gam, 1.0), 4 * k_epsilon);
     // The indentation grows at once, by its fourth-power term; the other term adds round-off only.
-    const double rounding = 1e-14 * material.a_Y;
-    EXPECT_LE(std::abs(dent.h_zeta - 2.0 * k::k1 * std::pow(material.a_Y, 3)), rounding);
+    const double round_off = 1e-14 * material.a_Y;
+    EXPECT_LE(std::abs(dent.h_zeta - 2.0 * k::k1 * std::pow(material.a_Y, 3)), round_off);
   }
 }
 
@@ -237,7 +237,7 @@ TEST(CelDent, HasTheDerivativesOfItsQuantities) {
 /// Compares the slopes of a quantity of a contact with respect to its dent, its surroundings and its own coordinate.
 template <class Make>
 void expect_slopes(const Make& make, double Contact::*value, const Slopes& by, const Material& material,
-                   const Dent& dent, const Surroundings& at, double coordinate, const char* name) {
+                   const Dent& dent, const Surround_offs& at, double coordinate, const char* name) {
   SCOPED_TRACE(name);
   const double zeta = dent.zeta;
   expect_derivative(
@@ -254,7 +254,7 @@ void expect_slopes(const Make& make, double Contact::*value, const Slopes& by, c
 }
 
 TEST(CelContact, HasTheDerivativesOfItsQuantities) {
-  for_all_contacts([](const Material& material, const Dent& dent, const Surroundings& at, double u) {
+  for_all_contacts([](const Material& material, const Dent& dent, const Surround_offs& at, double u) {
     const auto by_displacement = [&](const Dent& d, double l, double m, double x) {
       return contact_at(material, d, l, m, x);
     };
@@ -277,14 +277,14 @@ TEST(CelContact, HasTheDerivativesOfItsQuantities) {
 // --- the elastic law
 
 TEST(CelContact, HasTheStiffnessOfAFlatPunchOfItsArea) {
-  for_all_contacts([](const Material& material, const Dent& dent, const Surroundings& at, double u) {
+  for_all_contacts([](const Material& material, const Dent& dent, const Surround_offs& at, double u) {
     const Contact contact = contact_at(material, dent, at.l, at.m, u);
     EXPECT_LE(relative_error(contact.F_by.coordinate, 2.0 * material.Es * std::sqrt(contact.area)), 1e-13);
   });
 }
 
 TEST(CelContact, HasItsLimitAreaAtItsLimitForce) {
-  for_all_contacts([](const Material& material, const Dent& dent, const Surroundings& at, double) {
+  for_all_contacts([](const Material& material, const Dent& dent, const Surround_offs& at, double) {
     const double H = contact_at(material, dent, at.l, at.m, 0.0).H;
     const Contact contact = contact_under(material, dent, at.l, at.m, H);
     EXPECT_EQ(contact.F_over_H, 1.0);
@@ -295,7 +295,7 @@ TEST(CelContact, HasItsLimitAreaAtItsLimitForce) {
 }
 
 TEST(CelContact, UnderAForceIsThatAtItsDisplacement) {
-  for_all_contacts([](const Material& material, const Dent& dent, const Surroundings& at, double u) {
+  for_all_contacts([](const Material& material, const Dent& dent, const Surround_offs& at, double u) {
     const Contact contact = contact_at(material, dent, at.l, at.m, u);
     const Contact under = contact_under(material, dent, at.l, at.m, contact.F);
     EXPECT_LE(relative_error(under.u, u), 1e-14);
@@ -310,7 +310,7 @@ TEST(CelContact, UnderAForceIsThatAtItsDisplacement) {
 }
 
 TEST(CelContact, StoresTheWorkOfItsForce) {
-  for_all_contacts([](const Material& material, const Dent& dent, const Surroundings& at, double u) {
+  for_all_contacts([](const Material& material, const Dent& dent, const Surround_offs& at, double u) {
     expect_derivative(
         contact_at(material, dent, at.l, at.m, u).F,
         [&](double x) { return contact_at(material, dent, at.l, at.m, x).stored; }, u, u, "stored energy");

@@ -74,8 +74,8 @@ TEST(CompressibleLoading, IsInvertedByTheDisplacementUnderAForce) {
                          0.1 + 8.0 * share(generator)};
     const double d = 0.5 * share(generator);
     // A round-off of the force is amplified by f/(d f') in d.
-    const double rounding = 1.0 + loading_force(law, d) / (d * slope_in(law, part_at(law, d), d));
-    worst = std::max(worst, relative_error(displacement_under(law, loading_force(law, d)), d) / rounding);
+    const double round_off = 1.0 + loading_force(law, d) / (d * slope_in(law, part_at(law, d), d));
+    worst = std::max(worst, relative_error(displacement_under(law, loading_force(law, d)), d) / round_off);
   }
   EXPECT_LT(worst, 8 * k_epsilon);
   EXPECT_EQ(displacement_under(k_law, 0.0), 0.0);

@@ -12,8 +12,8 @@
 namespace monograin::hertz_test {
 namespace {
 
-constexpr double k_rounding = 4 * k_epsilon;  // a product of a few factors and one square root
-constexpr double k_quadrature = 1e-14;        // rounding of a sum of some hundred values
+constexpr double k_round_off = 4 * k_epsilon;  // a product of a few factors and one square root
+constexpr double k_quadrature = 1e-14;         // rounding of a sum of some hundred values
 
 struct HertzRow {
   const char* name;
@@ -27,9 +27,9 @@ TEST_P(HertzTable, MatchesHandComputedValues) {
   const auto& row = GetParam();
   const auto inputs = ::testing::Message()
                       << "E* = " << row.modulus << ", R = " << row.radius << ", delta = " << row.overlap;
-  EXPECT_LE(relative_error(hertz_force(row.modulus, row.radius, row.overlap), row.force), k_rounding) << inputs;
-  EXPECT_LE(relative_error(hertz_contact_radius(row.radius, row.overlap), row.contact_radius), k_rounding) << inputs;
-  EXPECT_LE(relative_error(hertz_energy(row.modulus, row.radius, row.overlap), row.energy), k_rounding) << inputs;
+  EXPECT_LE(relative_error(hertz_force(row.modulus, row.radius, row.overlap), row.force), k_round_off) << inputs;
+  EXPECT_LE(relative_error(hertz_contact_radius(row.radius, row.overlap), row.contact_radius), k_round_off) << inputs;
+  EXPECT_LE(relative_error(hertz_energy(row.modulus, row.radius, row.overlap), row.energy), k_round_off) << inputs;
 }
 
 INSTANTIATE_TEST_SUITE_P(Hertz, HertzTable,
@@ -42,15 +42,15 @@ INSTANTIATE_TEST_SUITE_P(Hertz, HertzTable,
 
 TEST(Hertz, CompositeModulusOfARigidWallIsThePlaneStrainModulus) {
   EXPECT_EQ(composite_modulus(2.0, 0.0), 2.0);
-  EXPECT_LE(relative_error(composite_modulus(3.0, 0.5), 4.0), k_rounding);
-  EXPECT_LE(relative_error(composite_modulus(91.0, 0.3), 100.0), k_rounding);
-  EXPECT_LE(relative_error(composite_modulus(91.0, -0.3), 100.0), k_rounding);
+  EXPECT_LE(relative_error(composite_modulus(3.0, 0.5), 4.0), k_round_off);
+  EXPECT_LE(relative_error(composite_modulus(91.0, 0.3), 100.0), k_round_off);
+  EXPECT_LE(relative_error(composite_modulus(91.0, -0.3), 100.0), k_round_off);
 }
 
 TEST(Hertz, ForceGrowsWithThePowerThreeHalvesOfTheOverlap) {
   for (const double overlap : {1e-12, 1e-6, 1e-3, 0.1}) {
     const double ratio = hertz_force(1.7, 0.3, 100.0 * overlap) / hertz_force(1.7, 0.3, overlap);
-    EXPECT_LE(relative_error(ratio, 1000.0), k_rounding) << "delta = " << overlap;
+    EXPECT_LE(relative_error(ratio, 1000.0), k_round_off) << "delta = " << overlap;
   }
 }
 
@@ -70,7 +70,7 @@ TEST(Hertz, EnergyIsTheWorkOfTheForce) {
     const double work = integrator.integrate([](double x) { return hertz_force(1.7, 0.3, x); }, 0.0, overlap);
     EXPECT_LE(relative_error(hertz_energy(1.7, 0.3, overlap), work), k_quadrature) << "delta = " << overlap;
     const double closed_form = 8.0 / 15.0 * 1.7 * std::sqrt(0.3 * overlap) * overlap * overlap;
-    EXPECT_LE(relative_error(hertz_energy(1.7, 0.3, overlap), closed_form), k_rounding) << "delta = " << overlap;
+    EXPECT_LE(relative_error(hertz_energy(1.7, 0.3, overlap), closed_form), k_round_off) << "delta = " << overlap;
   }
 }
 

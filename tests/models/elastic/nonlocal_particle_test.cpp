@@ -79,7 +79,7 @@ TEST(NonlocalParticle, RefusesAForceThatPulls) {
   EXPECT_NO_THROW(pressed.particle.require_pressing_walls(0.4));
   EXPECT_THROW(pressed.particle.require_pressing_walls(0.6), std::domain_error);
   EXPECT_THROW(pressed.particle.evaluate(0.6, pressed.y), std::domain_error);
-  EXPECT_EQ(pressed.particle.end_of_force(1), k_nowhere);
+  EXPECT_EQ(pressed.particle.end_of_force(1), k_infinity);
 }
 
 TEST(NonlocalParticle, SeesTheSideToWhichATouchingContactGoes) {

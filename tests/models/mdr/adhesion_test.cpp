@@ -24,7 +24,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double k_modulus = 1.3;
-constexpr double k_rounding = 16 * k_epsilon;  // a formula of some ten operations without cancellation
+constexpr double k_round_off = 16 * k_epsilon;  // a formula of some ten operations without cancellation
 constexpr double k_shares[] = {0.003, 0.03, 0.3, 0.7, 0.97};
 
 // --- contacts on which the law is tested
@@ -218,7 +218,7 @@ TEST(MdrAdhesionCriticalRadius, IsTheRootOfTheCubic) {
       const double k = xi * xi * pi * bond.surface_energy / (2.0 * bond.modulus) * flatness * flatness;
       const double square = indenter.profile == ElasticProfile::parabola ? b * b : (b - a) * (b + a);
       // The root is as accurate as the round-off of a leaves b - a.
-      EXPECT_LE(relative_error(a * a * a, k * square), k_rounding * (1.0 + a / std::max(b - a, k_epsilon * b)))
+      EXPECT_LE(relative_error(a * a * a, k * square), k_round_off * (1.0 + a / std::max(b - a, k_epsilon * b)))
           << bond << ", xi = " << xi;
       EXPECT_GT(a, 0.0) << bond;
       if (indenter.profile == ElasticProfile::ellipse) {
@@ -250,9 +250,9 @@ TEST(MdrAdhesionCriticalRadius, IsWhereTheEdgesForceOrDisplacementIsLeast) {
 /// Expects a radius computed back from a function of the edge. It is exact to the function's round-off over its slope;
 /// at the critical state, where the slope is zero, to the square root of that round-off.
 void expect_same_edge(const Bond& bond, double a, double back, double scale, double slope, double bend) {
-  const double rounding = 8.0 * k_epsilon * scale;
-  const double by_slope = rounding / std::max(slope, 1e-300);
-  const double by_bend = std::sqrt(2.0 * rounding / bend);
+  const double round_off = 8.0 * k_epsilon * scale;
+  const double by_slope = round_off / std::max(slope, 1e-300);
+  const double by_bend = std::sqrt(2.0 * round_off / bend);
   EXPECT_LE(std::abs(back - a), 2.0 * std::min(by_slope, by_bend) + 4.0 * k_epsilon * a)
       << bond << ", a = " << a << ", back = " << back << ", a/b = " << a / bond.indenter().half_width;
 }
@@ -328,7 +328,7 @@ TEST(MdrFreeContactRadius, IsWhereTheProfileIsAsHighAsTheDisplacement) {
       const double d = share * 0.5 * indenter.height;
       // Near the end of the profile the round-off of a is magnified.
       EXPECT_LE(relative_error(profile_height(indenter, free_contact_radius(indenter, d)), d),
-                k_rounding / (1.0 - share))
+                k_round_off / (1.0 - share))
           << bond << ", share = " << share;
     }
     EXPECT_EQ(free_contact_radius(indenter, 0.0), 0.0);
@@ -494,10 +494,10 @@ TEST(MdrStickingContact, GoesOverIntoPeelingWithoutAJump) {
       const Contact stuck = bond.sticking(bond.radius, bond.overlap_max, overlap, a);
       const Contact peels = bond.peeling(bond.radius, bond.overlap_max, overlap);
       // Round-off of the overlap over the slope; at the critical share also over the edge's slope.
-      const double rounding =
-          k_rounding * (bond.force_scale(a) + std::abs(peels.by_overlap) * (std::abs(overlap) + bond.overlap_max));
-      EXPECT_NEAR(stuck.force, peels.force, rounding) << bond << ", share = " << share;
-      EXPECT_NEAR(stuck.force, state.force, rounding) << bond << ", share = " << share;
+      const double round_off =
+          k_round_off * (bond.force_scale(a) + std::abs(peels.by_overlap) * (std::abs(overlap) + bond.overlap_max));
+      EXPECT_NEAR(stuck.force, peels.force, round_off) << bond << ", share = " << share;
+      EXPECT_NEAR(stuck.force, state.force, round_off) << bond << ", share = " << share;
       EXPECT_LT(peels.by_overlap, stuck.by_overlap) << bond;
     }
   }
@@ -529,18 +529,18 @@ TEST(MdrStickingContact, GoesOverIntoTheContactWithoutAdhesionWithoutAJump) {
       SCOPED_TRACE(::testing::Message() << bond << ", share = " << share);
       // Round-off of the overlap, a difference of large ones, over its unit.
       const double distance = profile_height(indenter, a) / bond.frame(overlap).by_overlap;
-      const double rounding = k_rounding * (1.0 + (std::abs(overlap) + bond.overlap_max) / distance);
-      EXPECT_LE(relative_error(stuck.force, free.force), 2.0 * rounding);
-      EXPECT_LE(relative_error(a, free.contact_radius), rounding);
-      EXPECT_LE(relative_error(stuck.by_overlap, free.by_overlap), rounding);
+      const double round_off = k_round_off * (1.0 + (std::abs(overlap) + bond.overlap_max) / distance);
+      EXPECT_LE(relative_error(stuck.force, free.force), 2.0 * round_off);
+      EXPECT_LE(relative_error(a, free.contact_radius), round_off);
+      EXPECT_LE(relative_error(stuck.by_overlap, free.by_overlap), round_off);
       EXPECT_NEAR(stuck.by_radius, free.by_radius,
-                  rounding * (std::abs(free.by_radius) + free.by_overlap + bond.force_scale(a) / bond.radius_length));
+                  round_off * (std::abs(free.by_radius) + free.by_overlap + bond.force_scale(a) / bond.radius_length));
       if (!is_elastic) {
         EXPECT_NEAR(stuck.by_overlap_max, free.by_overlap_max,
-                    rounding * (std::abs(free.by_overlap_max) + bond.force_scale(a) / bond.max_length));
+                    round_off * (std::abs(free.by_overlap_max) + bond.force_scale(a) / bond.max_length));
       }
       const double surface = recoverable * pi * a * a * bond.surface_energy;
-      EXPECT_NEAR(bond.energy(overlap, a), stored - surface, 3.0 * rounding * stored + k_rounding * surface);
+      EXPECT_NEAR(bond.energy(overlap, a), stored - surface, 3.0 * round_off * stored + k_round_off * surface);
     }
   }
 }
@@ -646,8 +646,8 @@ TEST(MdrAdhesiveEnergy, AtPullOffIsThePrintedOneOfTheParabola) {
       const double unit = k_modulus * std::pow(a, 5) / (1.1 * 1.1);
       return adhesive_energy(elastic_frame(ElasticProfile::parabola, 1.1, overlap), k_modulus, dg, a) / unit;
     };
-    EXPECT_LE(relative_error(energy(Control::displacement), 3.2), 8.0 * k_rounding) << "dg = " << dg;
-    EXPECT_LE(relative_error(energy(Control::force), -16.0 / 45.0), 8.0 * k_rounding) << "dg = " << dg;
+    EXPECT_LE(relative_error(energy(Control::displacement), 3.2), 8.0 * k_round_off) << "dg = " << dg;
+    EXPECT_LE(relative_error(energy(Control::force), -16.0 / 45.0), 8.0 * k_round_off) << "dg = " << dg;
   }
 }
 
@@ -674,9 +674,9 @@ TEST(MdrAdhesionLimit, OfVanishingSurfaceEnergyIsTheContactWithoutAdhesion) {
         // The force falls with the square root of the surface energy.
         const double fall =
             2.0 * k_modulus * free.contact_radius * critical_stretch(k_modulus, dg, free.contact_radius);
-        EXPECT_NEAR(peels.force, free.force, 2.0 * fall + k_rounding * free.force)
+        EXPECT_NEAR(peels.force, free.force, 2.0 * fall + k_round_off * free.force)
             << "dg = " << dg << ", delta = " << overlap;
-        EXPECT_NEAR(peels.by_overlap, free.by_overlap, 2.0 * fall / overlap + k_rounding * free.by_overlap)
+        EXPECT_NEAR(peels.by_overlap, free.by_overlap, 2.0 * fall / overlap + k_round_off * free.by_overlap)
             << "dg = " << dg << ", delta = " << overlap;
       }
     }
@@ -710,7 +710,7 @@ TEST(MdrAdhesion, IsHomogeneous) {
         const double modulus = stress * bond.modulus;
         const double dg = stress * length * bond.surface_energy;
         const double a_c = critical_radius(scaled, modulus, dg, Control::displacement);
-        EXPECT_LE(relative_error(a_c, length * bond.critical()), k_rounding) << bond;
+        EXPECT_LE(relative_error(a_c, length * bond.critical()), k_round_off) << bond;
         for (const double share : k_shares) {
           const double a = bond.between(share);
           const PeelState unit = bond.peel(a);

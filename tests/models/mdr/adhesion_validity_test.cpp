@@ -19,7 +19,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-constexpr double k_rounding = 16 * k_epsilon;
+constexpr double k_round_off = 16 * k_epsilon;
 
 // --- fits
 
@@ -36,16 +36,16 @@ TEST(MdrAdhesionFits, BeginAtTheirOnsets) {
 
 TEST(MdrAdhesionFits, AreThePrintedPowers) {
   // x = 1/16 and 1/8
-  EXPECT_LE(relative_error(peak_radius_over_initial_radius(0.135 + 0.0625, 0.0), 1.75 / 8.0), k_rounding);
-  EXPECT_LE(relative_error(peak_radius_over_contact_radius(0.15 + 0.125, 0.0), 1.1 / 2.0), k_rounding);
+  EXPECT_LE(relative_error(peak_radius_over_initial_radius(0.135 + 0.0625, 0.0), 1.75 / 8.0), k_round_off);
+  EXPECT_LE(relative_error(peak_radius_over_contact_radius(0.15 + 0.125, 0.0), 1.1 / 2.0), k_round_off);
 }
 
 TEST(MdrAdhesionFits, HaveADepthThatVanishesAtBothEnds) {
   // The middle and both ends of the parabola, where the function is continuous.
   constexpr double yield = 0.02;
   const auto depth = [](double x) { return peak_depth_over_initial_radius(x + yield + 0.15, yield, 10.0); };
-  EXPECT_LE(relative_error(depth(0.18), 0.1025 * std::pow(10.0, -1.175)), k_rounding);
-  EXPECT_LE(relative_error(depth(0.09), 0.75 * 0.1025 * std::pow(10.0, -1.175)), k_rounding);
+  EXPECT_LE(relative_error(depth(0.18), 0.1025 * std::pow(10.0, -1.175)), k_round_off);
+  EXPECT_LE(relative_error(depth(0.09), 0.75 * 0.1025 * std::pow(10.0, -1.175)), k_round_off);
   EXPECT_LE(depth(1e-9), 1e-9);
   EXPECT_LE(depth(0.36 - 1e-9), 1e-9);
   EXPECT_EQ(depth(0.3601), 0.0);
@@ -64,10 +64,10 @@ TEST(MdrPlasticZone, IsWhereTheEdgeReachesTheYieldStress) {
   constexpr double modulus = 3.0, surface_energy = 0.02, yield_stress = 0.7;
   const double r = plastic_zone_size(modulus, surface_energy, yield_stress);
   EXPECT_LE(relative_error(std::sqrt(2.0 * modulus * surface_energy) / std::sqrt(2.0 * pi * r), yield_stress),
-            k_rounding);
+            k_round_off);
   // A mean pressure has to be overcome first.
   const double with_pressure = plastic_zone_size(modulus, surface_energy, yield_stress, yield_stress);
-  EXPECT_LE(relative_error(with_pressure, 0.25 * r), k_rounding);
+  EXPECT_LE(relative_error(with_pressure, 0.25 * r), k_round_off);
   EXPECT_EQ(plastic_zone_size(modulus, surface_energy, k_infinity), 0.0);
 }
 

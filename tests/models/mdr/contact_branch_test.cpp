@@ -15,8 +15,8 @@
 namespace monograin::mdr::contact_branch_test {
 namespace {
 
-constexpr double k_growth = 0.02;     // r at which contacts are looked at
-constexpr double k_rounding = 1e-11;  // of forces that are differences of areas
+constexpr double k_growth = 0.02;      // r at which contacts are looked at
+constexpr double k_round_off = 1e-11;  // of forces that are differences of areas
 
 ContactLaw law_of(double modulus_over_yield, DeltaMaxRule rule = DeltaMaxRule::running_maximum) {
   ContactLaw law;
@@ -90,8 +90,8 @@ TEST(MdrContactBranch, HasNoJumpOfForceOrAreaWhereItYields) {
     EXPECT_EQ(elastic.yield_guard(law, k_growth, overlap), 0.0);
     const Contact before = elastic.contact(law, k_growth, overlap);
     const Contact after = elastic.yielded(law, k_growth).contact(law, k_growth, overlap);
-    EXPECT_LE(relative_error(after.force, before.force), k_rounding) << modulus_over_yield;
-    EXPECT_LE(relative_error(after.contact_radius, before.contact_radius), k_rounding) << modulus_over_yield;
+    EXPECT_LE(relative_error(after.force, before.force), k_round_off) << modulus_over_yield;
+    EXPECT_LE(relative_error(after.contact_radius, before.contact_radius), k_round_off) << modulus_over_yield;
   }
 }
 
@@ -108,9 +108,9 @@ TEST(MdrContactBranch, HasNoJumpOfForceAreaOrEnergyWhereItUnloadsAndReloads) {
     };
     for (const ContactBranch& branch : {unloading, again}) {
       const Contact contact = branch.contact(law, k_growth, overlap);
-      EXPECT_LE(relative_error(contact.force, first.force), k_rounding) << modulus_over_yield;
-      EXPECT_LE(relative_error(contact.contact_radius, first.contact_radius), k_rounding) << modulus_over_yield;
-      EXPECT_LE(relative_error(stored(branch), stored(plastic)), k_rounding) << modulus_over_yield;
+      EXPECT_LE(relative_error(contact.force, first.force), k_round_off) << modulus_over_yield;
+      EXPECT_LE(relative_error(contact.contact_radius, first.contact_radius), k_round_off) << modulus_over_yield;
+      EXPECT_LE(relative_error(stored(branch), stored(plastic)), k_round_off) << modulus_over_yield;
     }
     EXPECT_EQ(again.regime, Regime::fully_plastic);
     EXPECT_TRUE(again.is_on_primary_branch);

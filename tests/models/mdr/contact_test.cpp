@@ -20,8 +20,8 @@ namespace {
 using std::numbers::pi;
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
-constexpr double k_rounding = 8 * k_epsilon;  // a formula of some ten operations without cancellation
-constexpr double k_quadrature = 1e-14;        // rounding of a sum of some hundred values
+constexpr double k_round_off = 8 * k_epsilon;  // a formula of some ten operations without cancellation
+constexpr double k_quadrature = 1e-14;         // rounding of a sum of some hundred values
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 // --- yield overlap
@@ -38,7 +38,7 @@ class MdrYieldOverlapTable : public ::testing::TestWithParam<YieldRow> {};
 TEST_P(MdrYieldOverlapTable, MatchesPrintedDigits) {
   const auto& row = GetParam();
   EXPECT_NEAR(Grain{row.modulus_over_yield}.material().yield_overlap_ratio, row.overlap_ratio,
-              0.5 * row.last_digit + k_rounding * row.overlap_ratio)
+              0.5 * row.last_digit + k_round_off * row.overlap_ratio)
       << "E/Y = " << row.modulus_over_yield;
 }
 
@@ -61,7 +61,7 @@ TEST(MdrYieldOverlap, FallsWithTheSquareOfTheModulusForStiffMaterials) {
     // To the next order the fitted pressure falls by 1.75 * 4.4 d / 2.75 = 2.8 d, its square by twice that;
     // the term after it is 20.2 d^2.
     EXPECT_LE(relative_error(d * modulus_over_yield * modulus_over_yield, limit * (1.0 - 5.6 * d)),
-              21 * d * d + k_rounding)
+              21 * d * d + k_round_off)
         << "Es/Y = " << modulus_over_yield;
   }
 }
@@ -159,10 +159,10 @@ TEST(MdrElasticContact, FallsBelowThatOfHertzBySmallTermsForTheEllipse) {
     const double hertz = hertz_force(1.3, radius, overlap);
     // phi to its third term in delta/R: 1 - (3/40) x - (3/896) x^2 - ...
     EXPECT_LE(std::abs(contact.force / hertz - (1.0 - 3.0 / 40.0 * ratio - 3.0 / 896.0 * ratio * ratio)),
-              1e-3 * ratio * ratio * ratio + k_rounding)
+              1e-3 * ratio * ratio * ratio + k_round_off)
         << "delta/R = " << ratio;
     EXPECT_LE(relative_error(contact.contact_radius, std::sqrt(overlap * radius - 0.25 * overlap * overlap)),
-              k_rounding)
+              k_round_off)
         << "delta/R = " << ratio;
   }
 }
@@ -195,9 +195,9 @@ TEST(MdrYield, IsContinuousInForceContactRadiusAndPressureForTheParabola) {
   for (const Grain& grain : grains()) {
     const YieldJump jump(grain, ElasticProfile::parabola);
     const auto pressure = [](const Contact& c) { return c.force / (pi * c.contact_radius * c.contact_radius); };
-    EXPECT_LE(relative_error(jump.after.force, jump.before.force), k_rounding) << grain;
-    EXPECT_LE(relative_error(jump.after.contact_radius, jump.before.contact_radius), k_rounding) << grain;
-    EXPECT_LE(relative_error(pressure(jump.after), pressure(jump.before)), k_rounding) << grain;
+    EXPECT_LE(relative_error(jump.after.force, jump.before.force), k_round_off) << grain;
+    EXPECT_LE(relative_error(jump.after.contact_radius, jump.before.contact_radius), k_round_off) << grain;
+    EXPECT_LE(relative_error(pressure(jump.after), pressure(jump.before)), k_round_off) << grain;
   }
 }
 
@@ -216,7 +216,7 @@ TEST(MdrYield, RaisesTheAreaForTheEllipse) {
   for (const Grain& grain : grains()) {
     const YieldJump jump(grain, ElasticProfile::ellipse);
     const double ratio = jump.after.contact_radius / jump.before.contact_radius;
-    EXPECT_LE(relative_error(ratio * ratio, 1.0 / (1.0 - 0.25 * jump.overlap_ratio)), k_rounding) << grain;
+    EXPECT_LE(relative_error(ratio * ratio, 1.0 / (1.0 - 0.25 * jump.overlap_ratio)), k_round_off) << grain;
   }
 }
 
@@ -237,8 +237,8 @@ TEST(MdrPlasticContact, CarriesTheFittedPressureOverTheAreaOfTheCap) {
     const double m = dent.overlap_max;
     const double area = pi * (2.0 * m * dent.grain.radius - m * m + dent.area_constant);
     const double pressure = dent.material.yield_stress * (1.0 + 1.75 * std::exp(-4.4 * m / dent.grain.radius));
-    EXPECT_LE(relative_error(contact.force, pressure * area), k_rounding) << dent;
-    EXPECT_LE(relative_error(pi * contact.contact_radius * contact.contact_radius, area), k_rounding) << dent;
+    EXPECT_LE(relative_error(contact.force, pressure * area), k_round_off) << dent;
+    EXPECT_LE(relative_error(pi * contact.contact_radius * contact.contact_radius, area), k_round_off) << dent;
   }
 }
 
@@ -265,8 +265,8 @@ TEST(MdrUnloading, StartsFromThePlasticContact) {
   for (const Dent& dent : dents()) {
     const Contact plastic = dent.plastic(dent.grain.radius, dent.overlap_max);
     const Contact unloading = dent.unloading(dent.grain.radius, dent.overlap_max, dent.overlap_max);
-    EXPECT_LE(relative_error(unloading.force, plastic.force), k_rounding) << dent;
-    EXPECT_LE(relative_error(unloading.contact_radius, plastic.contact_radius), k_rounding) << dent;
+    EXPECT_LE(relative_error(unloading.force, plastic.force), k_round_off) << dent;
+    EXPECT_LE(relative_error(unloading.contact_radius, plastic.contact_radius), k_round_off) << dent;
   }
 }
 
@@ -294,7 +294,7 @@ TEST(MdrUnloading, GoesOnAboveTheLargestOverlapAsTheMirrorImage) {
     };
     for (const double u : {1e-6, 0.01, 0.3}) {
       // Round-off of the overlap, magnified to that of u.
-      const double tolerance = k_rounding + 4.0 * k_epsilon * dent.overlap_max / shape.recovery;
+      const double tolerance = k_round_off + 4.0 * k_epsilon * dent.overlap_max / shape.recovery;
       EXPECT_LE(relative_error(at(u).force + at(-u).force, 2.0 * at(0.0).force), tolerance) << dent << ", u = " << u;
       EXPECT_LE(relative_error(at(-u).contact_radius, at(u).contact_radius), tolerance) << dent << ", u = " << u;
     }
@@ -304,7 +304,7 @@ TEST(MdrUnloading, GoesOnAboveTheLargestOverlapAsTheMirrorImage) {
 TEST(MdrUnloading, KeepsItsForceBeyondTheMirrorImage) {
   for (const Dent& dent : dents()) {
     const UnloadingShape shape = dent.shape();
-    const double tolerance = k_rounding + 4.0 * k_epsilon * dent.overlap_max / shape.recovery;
+    const double tolerance = k_round_off + 4.0 * k_epsilon * dent.overlap_max / shape.recovery;
     const auto overlap = [&](double u) { return dent.overlap_max - u * shape.recovery; };
     const auto at = [&](double u) { return unloading_contact(shape, dent.material.composite_modulus, overlap(u)); };
     for (const double u : {-1.0, -1.5, -1e6}) {
@@ -328,7 +328,7 @@ TEST(MdrUnloading, IsStifferThanAnElasticContactOfItsRadius) {
       const Contact contact = dent.unloading(dent.grain.radius, dent.overlap_max, dent.overlap_at(u));
       EXPECT_LE(relative_error(contact.by_overlap * (1.0 - shape.rho),
                                2.0 * dent.material.composite_modulus * contact.contact_radius),
-                k_rounding)
+                k_round_off)
           << dent << ", u = " << u;
     }
   }

@@ -14,8 +14,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double k_rounding = 8 * k_epsilon;  // a formula of some ten operations without cancellation
-constexpr double k_quadrature = 1e-14;        // rounding of a sum of some hundred values
+constexpr double k_round_off = 8 * k_epsilon;  // a formula of some ten operations without cancellation
+constexpr double k_quadrature = 1e-14;         // rounding of a sum of some hundred values
 
 double unloading_force(const Dent& dent, double overlap) {
   return dent.unloading(dent.grain.radius, dent.overlap_max, overlap).force;
@@ -49,7 +49,7 @@ TEST(MdrPlasticEnergy, IsThatOfTheSpringsThatMoveTheWall) {
     const UnloadingShape shape = dent.shape();
     const double a = shape.contact_radius_max;
     const double springs = 8.0 / 3.0 * shape.pressure * shape.pressure * a * a * a / dent.material.composite_modulus;
-    EXPECT_LE(relative_error(plastic_energy(shape), (1.0 - shape.rho) * springs), k_rounding) << dent;
+    EXPECT_LE(relative_error(plastic_energy(shape), (1.0 - shape.rho) * springs), k_round_off) << dent;
   }
 }
 
@@ -112,7 +112,8 @@ TEST(MdrYieldEnergy, FallsByAFixedFactorOfTheUnloadingComplianceForTheParabola) 
   for (const Grain& grain : grains()) {
     const Dent dent{grain, grain.material().yield_overlap_ratio * grain.radius};
     const double expected = 80.0 / (9.0 * pi * pi) * (1.0 - dent.shape().rho);
-    EXPECT_LE(relative_error(stored_after_over_before_yield(grain, ElasticProfile::parabola), expected), 2 * k_rounding)
+    EXPECT_LE(relative_error(stored_after_over_before_yield(grain, ElasticProfile::parabola), expected),
+              2 * k_round_off)
         << grain;
   }
 }

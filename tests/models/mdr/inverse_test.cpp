@@ -21,7 +21,7 @@ using std::numbers::pi;
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
 constexpr double k_modulus = 1.3;
-constexpr double k_rounding = 8 * k_epsilon;
+constexpr double k_round_off = 8 * k_epsilon;
 
 /// Amplification of a relative error of the force in the overlap.
 double condition(const Contact& contact, double overlap) { return contact.force / (contact.by_overlap * overlap); }
@@ -50,7 +50,7 @@ TEST(MdrInversePhi, IsACubeRootForTinyValues) {
 
 TEST(MdrInversePhi, ReachesTheEndOfItsRange) {
   const double theta = inverse_phi(2.5);
-  EXPECT_LE(relative_error(phi(theta), 2.5), k_rounding);
+  EXPECT_LE(relative_error(phi(theta), 2.5), k_round_off);
   EXPECT_GT(theta, 0.5 * pi);
   EXPECT_LT(theta, pi);
 }
@@ -64,7 +64,7 @@ TEST(MdrElasticOverlap, BearsTheForce) {
         const double overlap = ratio * radius;
         const Contact contact = elastic_contact(profile, k_modulus, radius, overlap);
         const double back = elastic_overlap(profile, k_modulus, radius, contact.force);
-        EXPECT_LE(relative_error(back, overlap), k_rounding * (1.0 + condition(contact, overlap)))
+        EXPECT_LE(relative_error(back, overlap), k_round_off * (1.0 + condition(contact, overlap)))
             << "R = " << radius << ", delta/R = " << ratio;
       }
     }
@@ -75,7 +75,7 @@ TEST(MdrElasticOverlap, IsThatOfHertzForTheParabola) {
   for (const double force : {1e-20, 1e-6, 1.0}) {
     const double expected = std::pow(3.0 * force / (4.0 * k_modulus * std::sqrt(1.1)), 2.0 / 3.0);
     EXPECT_LE(relative_error(elastic_overlap(ElasticProfile::parabola, k_modulus, 1.1, force), expected),
-              2.0 * k_rounding);
+              2.0 * k_round_off);
   }
 }
 
@@ -117,7 +117,7 @@ TEST(MdrPlasticOverlap, BearsTheForceFromWhereverTheSearchBegins) {
       for (const double guess : {overlap, yield, 0.5 * (overlap + yield), 0.5 * (overlap + strongest), 0.0}) {
         const double back = plastic_overlap(dent.material, R, contact.force, dent.area_constant, guess);
         // The contact area is a difference with the area constant.
-        EXPECT_LE(relative_error(back, overlap), k_rounding * (2.0 + condition(contact, overlap)))
+        EXPECT_LE(relative_error(back, overlap), k_round_off * (2.0 + condition(contact, overlap)))
             << dent << ", share = " << share << ", guess = " << guess;
       }
     }
@@ -135,7 +135,7 @@ TEST(MdrPlasticOverlap, EndsAtTheLargestForce) {
           << dent << ", guess = " << guess;
       const double back = plastic_overlap(dent.material, R, most * 0.999, dent.area_constant, guess);
       EXPECT_LT(back, strongest) << dent;
-      EXPECT_LE(relative_error(dent.plastic(R, back).force, most * 0.999), k_rounding) << dent;
+      EXPECT_LE(relative_error(dent.plastic(R, back).force, most * 0.999), k_round_off) << dent;
     }
   }
 }
@@ -151,8 +151,8 @@ TEST(MdrUnloadingOverlap, BearsTheForceBelowTheLargestOverlapAndSomewhatAbove) {
       const double back = unloading_overlap(shape, contact.force);
       // Round-off of the overlap itself, and of the distance from the opening over its condition (largest at the
       // maximum).
-      const double rounding = k_epsilon * dent.overlap_max + k_rounding * contact.force / contact.by_overlap;
-      EXPECT_NEAR(back, overlap, 2.0 * rounding) << dent << ", u = " << u;
+      const double round_off = k_epsilon * dent.overlap_max + k_round_off * contact.force / contact.by_overlap;
+      EXPECT_NEAR(back, overlap, 2.0 * round_off) << dent << ", u = " << u;
     }
   }
 }
@@ -172,7 +172,7 @@ TEST(MdrRecompressedShare, HasItsDigitsHoweverSmallTheRecoveryIs) {
     const double unit = 2.0 * shape.pressure * shape.contact_radius_max * shape.contact_radius_max;
     for (const double share : {1e-12, 1e-6, 0.1, 0.5, 1.0}) {
       const double force = unit * phi(2.0 * std::asin(std::sqrt(0.5 * share)));
-      EXPECT_LE(relative_error(recompressed_share(shape, force), share), k_rounding) << dent << ", share = " << share;
+      EXPECT_LE(relative_error(recompressed_share(shape, force), share), k_round_off) << dent << ", share = " << share;
     }
   }
 }

@@ -49,7 +49,7 @@ std::vector<Row> rows_without_adhesion(std::string_view state) {
   return rows;
 }
 
-constexpr double k_rounding = 8 * k_epsilon;  // largest error found: 7.1e-16
+constexpr double k_round_off = 8 * k_epsilon;  // largest error found: 7.1e-16
 
 void expect_contact(const Row& row, const Contact& contact, double tolerance) {
   row.expect("a_over_R0", contact.contact_radius, tolerance);
@@ -59,10 +59,10 @@ void expect_contact(const Row& row, const Contact& contact, double tolerance) {
 }
 
 void expect_shape(const Row& row, const UnloadingShape& shape) {
-  row.expect("pY_over_E", shape.pressure, k_rounding);
-  row.expect("A_over_R0", shape.height, k_rounding);
-  row.expect("B_over_R0", 2.0 * shape.contact_radius_max, k_rounding);
-  row.expect("rho", shape.rho, k_rounding);
+  row.expect("pY_over_E", shape.pressure, k_round_off);
+  row.expect("A_over_R0", shape.height, k_round_off);
+  row.expect("B_over_R0", 2.0 * shape.contact_radius_max, k_round_off);
+  row.expect("rho", shape.rho, k_round_off);
 }
 
 UnloadingShape shape_of(const Row& row) {
@@ -72,7 +72,7 @@ UnloadingShape shape_of(const Row& row) {
 TEST(MdrPointValues, YieldOverlapIsMet) {
   for (const std::string_view state : {"el", "pv", "pu"}) {
     for (const Row& row : rows_without_adhesion(state)) {
-      row.expect("d_Y", row.material().yield_overlap_ratio, k_rounding);
+      row.expect("d_Y", row.material().yield_overlap_ratio, k_round_off);
     }
   }
 }
@@ -83,7 +83,7 @@ TEST(MdrPointValues, ElasticContactIsMet) {
   for (const Row& row : rows) {
     const auto profile = row.word("elastic_profile") == "parabola" ? ElasticProfile::parabola : ElasticProfile::ellipse;
     const double modulus = row.material().composite_modulus;
-    expect_contact(row, elastic_contact(profile, modulus, row["R_over_R0"], row["delta_over_R0"]), k_rounding);
+    expect_contact(row, elastic_contact(profile, modulus, row["R_over_R0"], row["delta_over_R0"]), k_round_off);
   }
 }
 
@@ -92,9 +92,9 @@ TEST(MdrPointValues, PlasticContactIsMet) {
   ASSERT_EQ(rows.size(), 2u);
   for (const Row& row : rows) {
     expect_contact(row, plastic_contact(row.material(), row["R_over_R0"], row["delta_over_R0"], row["cA_over_pi_R02"]),
-                   k_rounding);
+                   k_round_off);
     expect_shape(row, shape_of(row));
-    row.expect("delta_1D_over_R0", 0.5 * shape_of(row).height, k_rounding);
+    row.expect("delta_1D_over_R0", 0.5 * shape_of(row).height, k_round_off);
   }
 }
 
@@ -107,7 +107,7 @@ TEST(MdrPointValues, UnloadingContactIsMet) {
     const double u = unloading_fraction(shape, row["delta_over_R0"]);
     // The file's decimal overlaps are not doubles: their round-off moves u by up to eps times their ratio to the
     // recovery, and the force by 2.3 times as much (E/Y = 1e5: 7e-12).
-    const double tolerance = k_rounding + 2.5 * k_epsilon * shape.overlap_max / shape.recovery;
+    const double tolerance = k_round_off + 2.5 * k_epsilon * shape.overlap_max / shape.recovery;
     row.expect("delta_1D_over_R0", 0.5 * shape.height * (1.0 - u), tolerance);
     const Contact contact = unloading_contact(shape, row.material().composite_modulus, row["delta_over_R0"]);
     expect_contact(row, contact, tolerance);

@@ -86,8 +86,8 @@ TEST(MdrPressureCurve, HasTheSlopeOfItsValues) {
     const auto next = std::ranges::upper_bound(knots, x);
     const double room = std::min(x - *(next - 1), *next - x);  // the stencil must stay in one cubic
     const double slope = central_difference(value, x, room / 4.0);
-    const double rounding = 1e3 * k_epsilon * value(x) / room;
-    EXPECT_NEAR(curve.at(x).slope, slope, 1e-11 * std::abs(slope) + rounding) << "x = " << x;
+    const double round_off = 1e3 * k_epsilon * value(x) / room;
+    EXPECT_NEAR(curve.at(x).slope, slope, 1e-11 * std::abs(slope) + round_off) << "x = " << x;
   }
 }
 

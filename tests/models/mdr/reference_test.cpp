@@ -63,13 +63,13 @@ TEST_P(IntegratorAgainstReference, GainsADecadeFromTwoDecadesOfTolerance) {
 TEST_P(IntegratorAgainstReference, ErrorIsBoundedByTheTolerance) {
   constexpr double k_error_per_rtol = 100.0;      // 91 measured (force_control_EY30, BDF, 1e-12), else 19
   constexpr double k_time_error_per_rtol = 10.0;  // 2.3 measured (die_EY20, BDF)
-  constexpr double k_rounding = 2e-12;            // what is left with `direct`
-  constexpr double k_time_rounding = 2e-14;
+  constexpr double k_round_off = 2e-12;           // what is left with `direct`
+  constexpr double k_time_round_off = 2e-14;
   for (const double rtol : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12}) {
     const CurveErrors errors = errors_of(reference_, integrator_, rtol);
     EXPECT_EQ(errors.mismatch, "") << "rtol = " << rtol;
-    EXPECT_LE(errors.largest, k_error_per_rtol * rtol + k_rounding) << "rtol = " << rtol;
-    EXPECT_LE(errors.event_time, k_time_error_per_rtol * rtol + k_time_rounding) << "rtol = " << rtol;
+    EXPECT_LE(errors.largest, k_error_per_rtol * rtol + k_round_off) << "rtol = " << rtol;
+    EXPECT_LE(errors.event_time, k_time_error_per_rtol * rtol + k_time_round_off) << "rtol = " << rtol;
   }
 }
 

@@ -31,15 +31,15 @@ Particle pressed(double deep, double shallow, bool is_free = true) {
 TEST(MdrResolution, GrowsWithTheForcesOnTheCentre) {
   const Particle soft = pressed(1e-4, 1e-4);
   const Particle hard = pressed(1e-2, 1e-2);
-  EXPECT_GT(hard.force_rounding(), soft.force_rounding());
+  EXPECT_GT(hard.force_round_off(), soft.force_round_off());
   EXPECT_GE(resolution(hard), resolution(soft));
   EXPECT_GE(resolution(soft), k_resolution);
 }
 
 TEST(MdrResolution, RoundOffOfForcesIsNegligibleBesideThem) {
   const Particle p = pressed(1e-3, 1e-3);
-  EXPECT_GT(p.force_rounding(), std::numeric_limits<double>::epsilon() * p.magnitude_of_forces());
-  EXPECT_LT(p.force_rounding(), 1e-9 * p.magnitude_of_forces());
+  EXPECT_GT(p.force_round_off(), std::numeric_limits<double>::epsilon() * p.magnitude_of_forces());
+  EXPECT_LT(p.force_round_off(), 1e-9 * p.magnitude_of_forces());
 }
 
 TEST(MdrResolution, AContactOfAFreeCentreBelowItIsIdle) {

@@ -17,18 +17,18 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double k_rounding = 8 * k_epsilon;
+constexpr double k_round_off = 8 * k_epsilon;
 constexpr double k_quadrature = 2e-14;  // rounding of a sum of some hundred values, and of their arguments
 
 // --- powers
 
 TEST(MdrTransforms, PowersHaveTheirPrintedRatios) {
-  EXPECT_LE(relative_error(power_ratio(0.0), 1.0), k_rounding);
-  EXPECT_LE(relative_error(power_ratio(1.0), 0.5 * pi), k_rounding);
-  EXPECT_LE(relative_error(power_ratio(2.0), 2.0), k_rounding);
-  EXPECT_LE(relative_error(power_ratio(3.0), 0.75 * pi), k_rounding);
-  EXPECT_LE(relative_error(power_ratio(4.0), 8.0 / 3.0), k_rounding);
-  EXPECT_LE(relative_error(power_ratio(6.0), 3.2), k_rounding);
+  EXPECT_LE(relative_error(power_ratio(0.0), 1.0), k_round_off);
+  EXPECT_LE(relative_error(power_ratio(1.0), 0.5 * pi), k_round_off);
+  EXPECT_LE(relative_error(power_ratio(2.0), 2.0), k_round_off);
+  EXPECT_LE(relative_error(power_ratio(3.0), 0.75 * pi), k_round_off);
+  EXPECT_LE(relative_error(power_ratio(4.0), 8.0 / 3.0), k_round_off);
+  EXPECT_LE(relative_error(power_ratio(6.0), 3.2), k_round_off);
   // kappa_n kappa_(n+1) = pi (n + 1)/2, where the gamma functions themselves overflow.
   EXPECT_LE(relative_error(power_ratio(400.0) * power_ratio(401.0), 200.5 * pi), 64 * k_epsilon);
 }
@@ -49,7 +49,7 @@ TEST(MdrTransforms, TakePowersToPowersInBothDirections) {
       EXPECT_LE(relative_error(profile_1d(slope, at), image(at)), of_slope) << "n = " << n << ", x = " << at;
       EXPECT_LE(relative_error(profile_3d(image, at), coefficient * std::pow(at, n)), k_quadrature)
           << "n = " << n << ", r = " << at;
-      EXPECT_LE(relative_error(power_profile_3d(power_ratio(n), n, at), std::pow(at, n)), k_rounding)
+      EXPECT_LE(relative_error(power_profile_3d(power_ratio(n), n, at), std::pow(at, n)), k_round_off)
           << "n = " << n << ", r = " << at;
     }
   }

@@ -55,7 +55,7 @@ std::vector<Stretch> stretches_of(const HardeningLaw& law) {
 }
 
 /// Relative error of the distance to zero porosity due to the round-off of both.
-double rounding_of_distance(const HardeningLaw& law, double x) {
+double round_off_of_distance(const HardeningLaw& law, double x) {
   return law.configuration == Configuration::simple ? 0.0 : 0.25 * k_epsilon / (law.zero_porosity - x);
 }
 
@@ -160,15 +160,15 @@ TEST_P(HardeningCurve, AgreesWithFiftyDigits) {
       EXPECT_LE(scaled_error(actual, expected, scale), tolerance)
           << column << " at x = " << x << ": " << actual << " instead of " << expected;
     };
-    const double rounding = rounding_of_distance(law, x);
+    const double round_off = round_off_of_distance(law, x);
     // Near zero porosity the pressure is the logarithm of the distance to it, and its slope the inverse.
-    const double of_pressure = rounding * law.pressure_scale / state.pressure;
-    expect("a_over_R", state.contact_radius, 2e-15);                                     // largest error found: 6.1e-16
-    expect("Hbar", state.pressure, 2e-15 + of_pressure);                                 // 7.8e-16 in excess
-    expect("P_over_kappaR2", state.force, 3e-15 + of_pressure);                          // 9.4e-16
-    expect("dHbar_dx", state.pressure_by_approach, 1.5e-14 + rounding, state.pressure);  // 5.5e-15
-    expect("dP_dx", state.force_by_approach, 4e-15 + rounding);                          // 1.4e-15
-    expect("W_over_kappaR3", work(law, x), 1.2e-14);                                     // 3.8e-15
+    const double of_pressure = round_off * law.pressure_scale / state.pressure;
+    expect("a_over_R", state.contact_radius, 2e-15);             // largest error found: 6.1e-16
+    expect("Hbar", state.pressure, 2e-15 + of_pressure);         // 7.8e-16 in excess
+    expect("P_over_kappaR2", state.force, 3e-15 + of_pressure);  // 9.4e-16
+    expect("dHbar_dx", state.pressure_by_approach, 1.5e-14 + round_off, state.pressure);  // 5.5e-15
+    expect("dP_dx", state.force_by_approach, 4e-15 + round_off);                          // 1.4e-15
+    expect("W_over_kappaR3", work(law, x), 1.2e-14);                                      // 3.8e-15
     if (relative_error(x, law.fall.end) > 4 * k_epsilon) {
       EXPECT_EQ(name(state.regime), word(table, row, "regime")) << "x = " << x;
     }

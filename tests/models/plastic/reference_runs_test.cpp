@@ -93,9 +93,9 @@ class ReferenceCurve : public ::testing::TestWithParam<std::string> {
       double worst = 0.0;
       for (std::size_t k = 0; k < std::min(reference.size(), actual.size() - 1); ++k) {
         // Next to the filled cell a round-off of x is a relative error of x/(x_g - x) times that in the pressure.
-        const double rounding = singular_share * k_epsilon * x[k] / (singular_ - x[k]);
+        const double round_off = singular_share * k_epsilon * x[k] / (singular_ - x[k]);
         const double over = scale == Scale::own ? std::abs(reference[k]) : largest(reference);
-        worst = std::max(worst, std::abs(actual[k + 1] - reference[k]) / over - rounding);
+        worst = std::max(worst, std::abs(actual[k + 1] - reference[k]) / over - round_off);
       }
       return worst;
     };
