@@ -22,6 +22,12 @@ foreach(header IN LISTS headers)
   string(REPLACE "#include \"" "#include \"monograin/laws/" text "${text}")
   file(CONFIGURE OUTPUT "${law_headers}/${header}" CONTENT "${text}" @ONLY)
 endforeach()
+# A header that has left the tree must not be installed from an older build.
+file(GLOB_RECURSE staged_headers RELATIVE "${law_headers}" "${law_headers}/*.hpp")
+list(REMOVE_ITEM staged_headers ${headers})
+foreach(header IN LISTS staged_headers)
+  file(REMOVE "${law_headers}/${header}")
+endforeach()
 
 add_library(monograin ${library_objects})
 add_library(monograin::monograin ALIAS monograin)

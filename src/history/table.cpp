@@ -5,8 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <ostream>
-#include <sstream>
 #include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
@@ -320,32 +318,13 @@ std::string csv_number(double value) {
   return text;
 }
 
-namespace {
-
-void write_csv(const Table& table, std::ostream& out, int digits) {
-  constexpr std::size_t k_chunk = std::size_t{1} << 20U;  // bytes of text that are collected before a write
+// Appends to a string: an output stream would swallow an allocation that fails, and the text would end there.
+std::string csv_text(const Table& table, int digits) {
   std::string text;
-  const auto write = [&] {
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    text.clear();
-  };
   append_header(text, table);
   append_headings(text, table.columns());
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    append_row(text, table, row, digits);
-    if (text.size() >= k_chunk) write();
-  }
-  write();
-}
-
-}  // namespace
-
-void write_csv(const Table& table, std::ostream& out) { write_csv(table, out, k_all_digits); }
-
-std::string csv_text(const Table& table, int digits) {
-  std::ostringstream text;
-  write_csv(table, text, digits);
-  return std::move(text).str();
+  for (std::size_t row = 0; row < table.row_count(); ++row) append_row(text, table, row, digits);
+  return text;
 }
 
 Table read_csv(const std::filesystem::path& file, FileKind kind) {

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <iosfwd>
 #include <limits>
 #include <optional>
 #include <span>
@@ -83,23 +82,21 @@ class Table {
 /// Significant digits with which a double that is written and read back is bitwise equal.
 inline constexpr int k_all_digits = std::numeric_limits<double>::max_digits10;
 
-/// Text of a number as write_csv() writes it.
+/// Text of a number as csv_text() writes it.
 [[nodiscard]] std::string csv_number(double value);
-/// Appends a number to a text as write_csv() writes it.
+/// Appends a number to a text as csv_text() writes it.
 /// @param digits  significant digits; with k_all_digits as few of them as restore the value. Integers below 1e15 are
 ///                written with all their digits.
 void append_csv_number(std::string& text, double value, int digits = k_all_digits);
 
-/// Writes `# key: value` lines, one row of headings, and the rows (`nan` for undefined values), independent of the
-/// locale. Numbers have as few digits, at most 17, as read_csv() needs to restore bitwise equal doubles.
-/// Nothing is quoted; a line break in a header line becomes a space.
-/// @throws std::invalid_argument if a heading or a word contains a comma, a quote or a line break
-void write_csv(const Table& table, std::ostream& out);
-/// Text that write_csv() writes.
+/// Text of a table as CSV: `# key: value` lines, one row of headings, and the rows (`nan` for undefined values),
+/// independent of the locale. Numbers have as few digits, at most 17, as read_csv() needs to restore bitwise equal
+/// doubles. Nothing is quoted; a line break in a header line becomes a space.
 /// @param digits  significant digits; fewer than k_all_digits suit measured values, which are then not restored bitwise
+/// @throws std::invalid_argument if a heading or a word contains a comma, a quote or a line break
 [[nodiscard]] std::string csv_text(const Table& table, int digits = k_all_digits);
 
-/// Reads a file of write_csv(), or any CSV with one row of headings and optional `#` lines.
+/// Reads a file with csv_text(), or any CSV with one row of headings and optional `#` lines.
 /// Blank lines, blanks around cells, a byte order mark and CRLF line ends are accepted; quotes have no meaning. A
 /// column with a cell that is not a number becomes a column of words (an empty cell is the empty word).
 /// @throws std::runtime_error `file:line:column: message` for a missing or empty file, ragged rows, no row of headings,

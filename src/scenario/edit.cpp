@@ -60,6 +60,7 @@ std::string text_of_table(std::string_view document, std::string_view key, const
   const toml::table* table = root[key].as_table();
   if (table == nullptr) throw_fault({origin}, fmt::format("there is no table [{}]", key));
   std::ostringstream text;
+  text.exceptions(std::ios::badbit);  // an allocation that fails must not cut the text
   text << toml::toml_formatter{*table} << '\n';
   return text.str();
 }

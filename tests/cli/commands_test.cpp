@@ -264,7 +264,7 @@ TEST_F(Commands, CompareTakesRunFoldersWithTheirEvents) {
   for (std::size_t k = 0; k + 1 < events.row_count(); ++k) fewer.append(events.row(k));
   fs::copy(path("a"), path("d"), fs::copy_options::recursive);
   std::ofstream out(path("d/events.csv"), std::ios::binary);
-  write_csv(fewer, out);
+  out << csv_text(fewer);
   out.close();
   const Outcome lost = monograin("compare a d --tol 1");
   EXPECT_EQ(lost.code, 5);
@@ -319,7 +319,7 @@ TEST_F(Commands, RegressFindsAMovedCurve) {
     moved.append(row);
   }
   std::ofstream out(path("curves/small.csv"), std::ios::binary);
-  write_csv(moved, out);
+  out << csv_text(moved);
   out.close();
   EXPECT_EQ(monograin("regress --curves curves").code, 5);
 }

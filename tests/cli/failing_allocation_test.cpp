@@ -50,9 +50,9 @@ TEST_F(FailingAllocation, EndsWithAMessageAndLeavesTheOldRunWhole) {
     std::erase_if(names, [](const std::string& name) { return name.starts_with(".out."); });
     return names;
   };
-  // Each of the first twenty allocations, then one of every twentieth part: a run makes some thousands.
+  // Each of the first hundred allocations, then one of every hundredth part: a run makes some thousands.
   bool has_failed = false;
-  for (long at = 1; at < 1'000'000; at += 1 + at / 20) {
+  for (long at = 1; at < 1'000'000; at += 1 + at / 100) {
     setenv("LD_PRELOAD", MONOGRAIN_FAILING_NEW, 1);
     setenv("MONOGRAIN_FAILING_ALLOCATION", std::to_string(at).c_str(), 1);
     const Outcome outcome = monograin("run small.toml -o out");

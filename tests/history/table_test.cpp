@@ -41,7 +41,7 @@ class CsvFile : public ::testing::Test {
   }
   [[nodiscard]] Table round_trip(const Table& table) const {
     std::ostringstream text;
-    write_csv(table, text);
+    text << csv_text(table);
     return read(text.str());
   }
   /// What reading complains about, without the folder.
@@ -61,7 +61,7 @@ class CsvFile : public ::testing::Test {
 
 std::string text_of(const Table& table) {
   std::ostringstream text;
-  write_csv(table, text);
+  text << csv_text(table);
   return text.str();
 }
 

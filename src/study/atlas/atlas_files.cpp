@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "figure/markdown.hpp"
 #include "figure/page.hpp"
@@ -153,12 +152,6 @@ void append_headings(const ComparisonRow& quantity, Row& headings) {
   return rows;
 }
 
-[[nodiscard]] std::string csv_text(const AtlasFigure& figure) {
-  std::ostringstream out;
-  write_csv(tables_csv(figure), out);
-  return out.str();
-}
-
 constexpr const char* k_about_comparisons =
     "Loading up to each reversal: area error sqrt(int (model - reference)^2 dx)/int |reference| dx, peak error\n"
     "max |model - reference|/reference at the reversal, and the share of the loading that the model covers.\n"
@@ -276,7 +269,7 @@ std::vector<fs::path> write_atlas(const std::vector<AtlasFigure>& figures, const
     }
     if (const std::string tables = tables_text(made); !tables.empty()) {
       fs::create_directories(folder);
-      figure::write_whole(folder / (made.name + ".csv"), csv_text(made));
+      figure::write_whole(folder / (made.name + ".csv"), csv_text(tables_csv(made)));
       figure::write_whole(folder / (made.name + ".md"), tables);
       written.insert(written.end(), {folder / (made.name + ".csv"), folder / (made.name + ".md")});
     }

@@ -41,6 +41,7 @@ constexpr double k_most_maxpro_runs = 1e5;
   runs.erase("results");
   if (runs.erase("bands") > 0) runs.insert_or_assign("histories", true);
   std::ostringstream text;
+  text.exceptions(std::ios::badbit);  // an allocation that fails must not cut the text
   text << runs;
   return text.str();
 }
