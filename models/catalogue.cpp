@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "elastic/line_contact.hpp"
 #include "elastic/nonlocal_coupling.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -28,7 +28,7 @@ double where_defined(std::span<const double> arguments) {
   try {
     return law(arguments);
   } catch (const std::domain_error&) {
-    return std::numeric_limits<double>::quiet_NaN();
+    return k_nan;
   }
 }
 

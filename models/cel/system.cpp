@@ -290,8 +290,8 @@ std::vector<Diagnostic> System::warnings() const {
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
   if (motion_.evaluate(particle_, xi, y) < k_hard_margin) return Difficulty::near_applicability_limit;
   // An idle wall, which only carries a loose particle along, bears no more than the weak spring does.
-  constexpr double k_ways = 10.0;
-  const double least = k_ways * Centre::k_weak_spring * particle_.depth();
+  constexpr double k_times = 10.0;
+  const double least = k_times * Centre::k_weak_spring * particle_.depth();
   const bool may_be_loose = particle_.layout().directions > 0;
   const auto is_idle = [&](const ClassState& c) { return c.touches && c.contact.F < least; };
   if (may_be_loose && std::ranges::any_of(particle_.classes, is_idle)) return Difficulty::singular_balance;

@@ -7,7 +7,7 @@
 /// then advance the work only, in any form: the other unknowns rest, and complete() solves for them.
 ///
 /// Particle has the equations, Newton solves them, Motion has the rates, decide_mode() chooses the mode, GuardSet
-/// watches its end; System puts these behind the interface HybridSystem. Own law of this project (docs/theory/cel.md).
+/// has its guards; System puts these behind the interface HybridSystem. Own law of this project (docs/theory/cel.md).
 #pragma once
 
 #include <vector>

@@ -9,6 +9,7 @@
 #include "compressible/point_limits.hpp"
 #include "compressible/return_mapping.hpp"
 #include "compressible/segment_ends.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::compressible {
 namespace {
@@ -27,8 +28,6 @@ constexpr std::array k_unknowns{
 constexpr double k_usual_gain = 10.0;
 constexpr double k_most_gain = 1e3;
 
-// Distance from the end of an elastic phase that counts as none (step coordinates).
-constexpr double k_ended = 1e-13;
 // Stiffness along the flow, over its usual size, below which integrators may fail: round-off of the stress is larger in
 // the plastic strain by its reciprocal.
 constexpr double k_hardly_unique = 1e-3;
@@ -167,7 +166,7 @@ void MaterialPoint::begin_step(std::span<const Ramp> ramps, std::span<double> y,
   if (phase_.is_plastic) log.push_back({"plastic-off"});
   phase_.is_plastic = false;
   arm_elastic(0.0, now);
-  if (guards_.empty() || elastic_end_.xi > k_ended) return;
+  if (guards_.empty() || elastic_end_.xi > k_same_instant) return;
   // The last step ended on the surface, and this step leads out of it.
   log.push_back({"yield"});
   turn_plastic(now);

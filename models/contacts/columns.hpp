@@ -5,13 +5,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "system/hybrid_system.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::contacts {
 
@@ -21,8 +21,7 @@ struct Energies {
   double stored = 0.0;
 };
 /// Energies of a row if the system leaves them out.
-inline constexpr Energies k_no_energies{std::numeric_limits<double>::quiet_NaN(),
-                                        std::numeric_limits<double>::quiet_NaN()};
+inline constexpr Energies k_no_energies{k_nan, k_nan};
 
 /// Numbers of one contact in a row of the history, SI.
 struct VisibleContact {

@@ -1,9 +1,10 @@
 #include "elastic/line_contact.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
+
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -45,7 +46,7 @@ LineContact line_contact_at_strain(double composite_modulus, double strain) {
     const double s = slenderness(log_width);
     const double step = (target - 2.0 * log_width - std::log(s)) / (2.0 - 0.5 / s);
     log_width += step;
-    if (std::abs(step) <= 4.0 * std::numeric_limits<double>::epsilon() * (1.0 + std::abs(log_width))) break;
+    if (std::abs(step) <= k_round_off * (1.0 + std::abs(log_width))) break;
   }
   return of_width(composite_modulus, std::exp(std::fmin(log_width, std::log(k_widest_line_contact))));
 }

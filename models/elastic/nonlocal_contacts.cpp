@@ -3,11 +3,11 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "elastic/hertz.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -37,7 +37,7 @@ Contacts::Contacts(const Formulation& model, std::span<const ContactClass> class
       modulus_(monograin::composite_modulus(1.0, poisson_ratio_)),
       arms_(classes.size(), Eigen::Vector3d::Zero()),
       at_(classes.size()),
-      seen_(classes.size(), std::numeric_limits<double>::quiet_NaN()) {
+      seen_(classes.size(), k_nan) {
   for (const ContactClass& c : classes) weights_.push_back(c.multiplicity());
   const std::vector<Wall> walls = walls_of(classes);
   const Eigen::MatrixXd influence = influence_of(model.influence, poisson_ratio_, walls, classes);
@@ -71,8 +71,9 @@ double Contacts::carried(std::size_t j, std::span<const double> y) const noexcep
 const Evaluation& Contacts::evaluate(std::span<const double> y) {
   const auto squares = y.first(class_count());
   if (std::ranges::equal(squares, seen_)) return at_;
-  forget();
-  for (std::size_t j = 0; j < class_count(); ++j) at_.set(j, law_, modulus_, y[j]);
+  seen_[0] = k_nan;  // if an evaluation throws, none is kept
+  // Zeros of both signs are equal and share an evaluation: the sum with zero makes both positive.
+  for (std::size_t j = 0; j < class_count(); ++j) at_.set(j, law_, modulus_, y[j] + 0.0);
   std::ranges::copy(squares, seen_.begin());
   return at_;
 }

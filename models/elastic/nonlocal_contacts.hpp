@@ -112,8 +112,6 @@ class Contacts {
   /// Contacts at a state; valid until another state is asked for.
   /// @throws std::domain_error for a contact beyond the end of the law
   const Evaluation& evaluate(std::span<const double> y);
-  /// Makes evaluate() start anew. Zeros of both signs are equal, but the kept approach has the sign of the first.
-  void forget() noexcept { seen_[0] = std::numeric_limits<double>::quiet_NaN(); }
   /// Approach that the forces on all walls add to that of a wall, sum_h G_jh F_h.
   [[nodiscard]] double lift_by_forces(std::size_t j, std::span<const double> forces) const noexcept;
   /// Approach that the displacement of the centre and the forces on all walls add to that of a wall.

@@ -5,13 +5,13 @@
 #include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -146,7 +146,7 @@ double edge_influence(bool is_projected, double nu, double theta, double x) {
   }
   // The length of eq. A.10 is |sin(phi)| at theta = pi/2: the halves are smooth, the whole is not.
   // Displacements at the edge and in the middle differ by a share of the order of x, which round-off limits.
-  const double round_off = 64.0 * std::numeric_limits<double>::epsilon() / x;
+  const double round_off = 64.0 * k_epsilon / x;
   const auto around = [&](double phi) {
     const double half = std::sin(0.5 * phi);
     return outward(half * half);

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -43,7 +43,7 @@ double integral(const auto& f, double end) {
 }  // namespace
 
 LocalLaw::LocalLaw(Terms terms) noexcept
-    : terms_(terms), end_(terms == Terms::all ? 1.0 : std::numeric_limits<double>::infinity()), greatest_force_(end_) {
+    : terms_(terms), end_(terms == Terms::all ? 1.0 : k_infinity), greatest_force_(end_) {
   if (terms == Terms::all) {
     greatest_force_ = at(std::nextafter(end_, 0.0)).force;
     return;

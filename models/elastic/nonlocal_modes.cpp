@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "system/resolution.hpp"
@@ -22,7 +21,7 @@ Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(i
 /// @return the least pivot; without `to_the_end` the first that is not positive, with the rest left undone
 double eliminate(Eigen::MatrixXd& matrix, bool to_the_end) noexcept {
   const Eigen::Index count = matrix.rows();
-  double least = std::numeric_limits<double>::infinity();
+  double least = k_infinity;
   for (Eigen::Index p = 0; p < count; ++p) {
     double* const pivot = &matrix(p, p);
     least = std::min(least, *pivot);
@@ -178,7 +177,7 @@ double Modes::margin(std::span<const double> stiffness) {
 
 double Modes::least_pivot(std::span<const double> stiffness, double shift) {
   set_roots(stiffness);
-  double least = std::numeric_limits<double>::infinity();
+  double least = k_infinity;
   for (Block& block : blocks_) {
     least = std::min(least, eliminated(block, shift));
     if (!(least > 0.0)) break;

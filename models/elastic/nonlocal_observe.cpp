@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "contacts/columns.hpp"
 #include "elastic/nonlocal_system.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 
@@ -18,7 +18,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   const Settings& settings = p.settings();
   const double length = settings.initial_radius;
   const double force_unit = settings.force_unit();
-  const double energy_unit = has_energies() ? force_unit * length : std::numeric_limits<double>::quiet_NaN();
+  const double energy_unit = has_energies() ? force_unit * length : k_nan;
   const double margin = p.contacts().margin(p.state());
   now_.least_margin = std::min(now_.least_margin, margin);
   auto out = values.begin();

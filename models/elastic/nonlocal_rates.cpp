@@ -46,7 +46,6 @@ void Rates::find(Contacts& contacts, std::span<const Ramp> ramps, std::span<cons
   const std::size_t n = contacts.class_count();
   if (find_unloaded(contacts, {ramps, y, {}, tolerances}, dy)) return;
   const Evaluation& at = contacts.evaluate(y);
-  contacts.forget();
   // Loads of redundant walls are integration errors: two such walls would hold the centre in their corner.
   const bool is_free = contacts.free_count() > 0;
   if (is_free) support_.sort_near(contacts, ramps, y, 2.0 * tolerances.touch);

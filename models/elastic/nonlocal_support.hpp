@@ -4,13 +4,13 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "contacts/centre/obstacles.hpp"
 #include "elastic/nonlocal_contacts.hpp"
 #include "elastic/nonlocal_equations.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 
@@ -18,7 +18,7 @@ namespace monograin::nonlocal {
 /// tested by themselves, because round-off of large ones would hide them; a decrease of the force on a loaded contact
 /// may balance them, too.
 [[nodiscard]] bool may_balance(const Contacts& contacts, std::span<const Target> targets, std::span<const double> y,
-                               double near = std::numeric_limits<double>::infinity());
+                               double near = k_infinity);
 /// True if, in some free direction, all walls with a gap below s are shallower than s or under force control.
 [[nodiscard]] bool is_held_softly(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
                                   double s);

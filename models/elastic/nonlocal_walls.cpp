@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
+
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
@@ -118,7 +119,7 @@ std::vector<std::vector<Neighbours>> neighbours_of(double poisson_ratio, std::sp
 
 std::vector<double> rivalry_of(const Eigen::MatrixXd& influence, double composite_modulus, std::span<const Wall> walls,
                                std::size_t class_count) {
-  std::vector<double> rivalry(class_count, std::numeric_limits<double>::infinity());
+  std::vector<double> rivalry(class_count, k_infinity);
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const double lifting = -influence.row(as_index(i)).cwiseMin(0.0).sum();
     const double radius = 1.0 / (2.0 * composite_modulus * lifting);

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -81,7 +82,7 @@ template <class Excess>
 ProfileEdge descend(const Indenter& indenter, double composite_modulus, double surface_energy, double from,
                     double down_to, double xi, Excess&& excess) noexcept {
   const double unit_stretch = critical_stretch(composite_modulus, surface_energy, indenter.half_width);
-  const double most = indenter.is_parabola() ? std::numeric_limits<double>::infinity() : 1.0;
+  const double most = indenter.is_parabola() ? k_infinity : 1.0;
   const double least = edge_at(indenter, down_to).rise;
   ProfileEdge edge = edge_at_rise(indenter, std::min(edge_at(indenter, from).rise, most));
   for (int iteration = 0; iteration < k_most_corrections; ++iteration) {
@@ -161,10 +162,9 @@ Indenter unloading_indenter(const UnloadingShape& shape) noexcept {
 double profile_height(const Indenter& indenter, double a) noexcept { return height_at(indenter, edge_at(indenter, a)); }
 
 double profile_round_off(const Indenter& indenter, double a) noexcept {
-  constexpr double round_off = 4.0 * std::numeric_limits<double>::epsilon();
   const ProfileEdge edge = edge_at(indenter, a);
   // At the very end of the ellipse the slope is unbounded: there the height is uncertain by the root of the round-off.
-  return 0.5 * indenter.height * edge.share * edge.share * round_off / std::max(edge.cosine, std::sqrt(round_off));
+  return 0.5 * indenter.height * edge.share * edge.share * k_round_off / std::max(edge.cosine, std::sqrt(k_round_off));
 }
 
 double free_contact_radius(const Indenter& indenter, double displacement_1d) noexcept {

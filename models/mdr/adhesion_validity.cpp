@@ -1,8 +1,9 @@
 #include "mdr/adhesion_validity.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -63,8 +64,7 @@ SurfaceEnergyWindow adhesion_window(const Indenter& indenter, double composite_m
   const double c = 0.5 * xi * xi * pi / (composite_modulus * slope * slope);
 
   const double rest = indenter.is_parabola() ? b * b : (b - peak_radius) * (b + peak_radius);
-  const double least =
-      rest > 0.0 ? peak_radius * peak_radius * peak_radius / (c * rest) : std::numeric_limits<double>::infinity();
+  const double least = rest > 0.0 ? peak_radius * peak_radius * peak_radius / (c * rest) : k_infinity;
   // a_c = zones dg
   const double zones = 0.5 * k_zones_per_diameter * composite_modulus / (pi * yield_stress * yield_stress);
   const double cubic = zones * zones * (indenter.is_parabola() ? zones : zones + c);

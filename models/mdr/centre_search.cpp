@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -194,11 +193,11 @@ class BalanceSearch {
   double xi_;
   std::span<double> y_;
   int count_;
-  bool is_only_one_ = false;                                    ///< no edge peels: the equilibrium is unique
-  double error_ = 0.0;                                          ///< net force where the present step begins
-  double noise_ = 0.0;                                          ///< round-off of the net force
-  double step_size_ = std::numeric_limits<double>::infinity();  ///< length of the last full Newton step
-  double path_ = std::numeric_limits<double>::infinity();       ///< length of its accepted part
+  bool is_only_one_ = false;       ///< no edge peels: the equilibrium is unique
+  double error_ = 0.0;             ///< net force where the present step begins
+  double noise_ = 0.0;             ///< round-off of the net force
+  double step_size_ = k_infinity;  ///< length of the last full Newton step
+  double path_ = k_infinity;       ///< length of its accepted part
   bool has_gone_back_ = false;
 };
 
@@ -365,8 +364,7 @@ class SaddleExit {
   /// Stiffness of the centre along the line.
   [[nodiscard]] double stiffness_at(double distance) {
     go(distance);
-    return contact_beyond_pull_off(p_) ? -std::numeric_limits<double>::infinity()
-                                       : direction_.dot(p_.centre().stiffness() * direction_);
+    return contact_beyond_pull_off(p_) ? -k_infinity : direction_.dot(p_.centre().stiffness() * direction_);
   }
 
   Particle& p_;

@@ -12,6 +12,7 @@
 
 #include "elastic/hertz.hpp"
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -123,7 +124,7 @@ Material make_material(double youngs_modulus, double poisson_ratio, double yield
 
 double yield_overlap_ratio(double modulus_over_yield) {
   const auto excess = [=](double s) { return elastic_excess(modulus_over_yield, s, exponential_pressure(s * s)); };
-  if (!(excess(1.0) > 0.0)) return std::numeric_limits<double>::infinity();
+  if (!(excess(1.0) > 0.0)) return k_infinity;
   // The pressure ratio falls from its value at 0 to 1, which brackets the root closely however stiff the material.
   const double unit = root_overlap_of_unit_pressure(modulus_over_yield);
   return square_of_root(excess, unit, std::min(1.0, exponential_pressure(0.0).value * unit));
@@ -148,7 +149,7 @@ double yield_overlap_ratio(double modulus_over_yield, const PressureCurve& press
     if (knot >= 1.0) break;
     lower = upper;
   }
-  return std::numeric_limits<double>::infinity();
+  return k_infinity;
 }
 
 double phi(double theta) noexcept {
@@ -329,7 +330,7 @@ double plastic_overlap(const Material& material, double radius, double force, do
   double low = radius - std::sqrt(radius * radius + area_constant);
   double high = radius;
   double overlap = std::clamp(guess, low + 1e-3 * (radius - low), 0.999 * radius);
-  double last_step = std::numeric_limits<double>::infinity();
+  double last_step = k_infinity;
   for (int iteration = 0; iteration < 100; ++iteration) {
     const Contact contact = plastic_contact(material, radius, overlap, area_constant);
     const double missing = force - contact.force;

@@ -4,10 +4,10 @@
 /// in compression. Derivatives are exact. Source, unless said otherwise: Zunker and Kamrin (2024).
 #pragma once
 
-#include <limits>
 #include <memory>
 
 #include "mdr/pressure_curve.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 
@@ -21,7 +21,7 @@ struct Material {
   double yield_stress = 0.0;       ///< Y, > 0; infinity: never yields
   double bulk_compliance = 0.0;    ///< 1/(3 kappa) = (1 - 2 nu)/E, >= 0
   /// Overlap over apparent radius at which an elastic contact yields; infinity: it never does.
-  double yield_overlap_ratio = std::numeric_limits<double>::infinity();
+  double yield_overlap_ratio = k_infinity;
   /// p_Y/Y over delta/R; null: the source's exponential.
   std::shared_ptr<const PressureCurve> pressure_curve{};
 };

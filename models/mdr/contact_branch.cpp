@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -118,10 +119,9 @@ Contact ContactBranch::stiff_contact(const ContactLaw& law, double r, double ove
 }
 
 bool ContactBranch::is_visible(const ContactLaw& law, double r, double overlap, double magnitude) const {
-  constexpr double round_off = 4.0 * std::numeric_limits<double>::epsilon();
   if (!edge.follows() || (regime != Regime::elastic && regime != Regime::unloading)) return true;
   const double touch = touching_overlap(law, r);
-  return !(overlap - touch < round_off * (magnitude + touch));
+  return !(overlap - touch < k_round_off * (magnitude + touch));
 }
 
 double ContactBranch::displacement_under(const ContactLaw& law, double r, double force, double guess) const {

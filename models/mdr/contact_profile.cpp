@@ -5,8 +5,9 @@
 #include <boost/math/special_functions/ellint_rd.hpp>
 #include <boost/math/special_functions/ellint_rf.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -95,7 +96,7 @@ double ContactProfile::relaxed_height(double r) const {
   if (indenter.is_parabola()) return 0.5 * indenter.tip_curvature() * r * r;
   const double distance = std::abs(r);
   const double modulus = distance / indenter.half_width;
-  if (modulus > 1.0) return std::numeric_limits<double>::quiet_NaN();
+  if (modulus > 1.0) return k_nan;
   if (modulus <= k_tip) {
     return 2.0 / pi *
            TipRule::integrate([&](double t) { return profile_height(indenter, distance * std::sin(t)); }, 0.0,

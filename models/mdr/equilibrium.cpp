@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include "mdr/centre_search.hpp"
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -64,13 +64,12 @@ void complete(Particle& p, double xi, std::span<double> y) {
 
 void grow(Particle& p, double xi, std::span<double> y) {
   const int count = p.centre().count();
-  double below = -std::numeric_limits<double>::infinity();
-  double above = std::numeric_limits<double>::infinity();
-  double step_size = std::numeric_limits<double>::infinity();
+  double below = -k_infinity;
+  double above = k_infinity;
+  double step_size = k_infinity;
   // Quadratic convergence makes the next step round-off below this. Convergence is slower where forces go with a square
   // root: for a contact that only touches a free centre, or an edge next to pull-off.
-  const double last_step =
-      !p.centre().is_free() && !peels_anywhere(p) ? k_last_step : 2.0 * std::numeric_limits<double>::epsilon();
+  const double last_step = !p.centre().is_free() && !peels_anywhere(p) ? k_last_step : 2.0 * k_epsilon;
   for (int iteration = 0; iteration < k_most_steps; ++iteration) {
     move_walls(p, xi, y);
     p.evaluate(xi, y);

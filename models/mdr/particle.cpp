@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "mdr/support.hpp"
@@ -266,13 +265,12 @@ double Particle::magnitude_of_forces() const noexcept {
 /// wall towards it.
 double Particle::force_round_off() const {
   if (force_round_off_) return *force_round_off_;
-  constexpr double round_off = std::numeric_limits<double>::epsilon();
   double sum = magnitude_of_forces();
   for (std::size_t i = 0; i < size(); ++i) {
     const double length = std::max(at_.longest, std::abs(contact(i).position));
     sum += count(i) * branches_[i].unpeeled_stiffness(law(), at_.r, contact(i).contact) * length;
   }
-  return *(force_round_off_ = 4.0 * round_off * sum);
+  return *(force_round_off_ = k_round_off * sum);
 }
 
 /// True for a prescribed force that is round-off beside the others and that no contact supports. Its load on the centre

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "mdr/contact_branch.hpp"
 #include "mdr/free_centre.hpp"
 #include "system/hybrid_system.hpp"
+#include "system/resolution.hpp"
 #include "system/walls.hpp"
 
 namespace monograin::mdr {
@@ -24,11 +24,11 @@ namespace monograin::mdr {
 inline constexpr double k_no_force = 1e-9;
 
 struct Settings {
-  double initial_radius = 0.0;                                    ///< R0 [m], > 0
-  double youngs_modulus = 0.0;                                    ///< E [Pa], > 0
-  double poisson_ratio = 0.0;                                     ///< in (-1, 0.5]
-  double yield_stress = std::numeric_limits<double>::infinity();  ///< Y [Pa], > 0; infinity: elastic throughout
-  double surface_energy = 0.0;                                    ///< dg of the particle-wall contact [J/m2], >= 0
+  double initial_radius = 0.0;       ///< R0 [m], > 0
+  double youngs_modulus = 0.0;       ///< E [Pa], > 0
+  double poisson_ratio = 0.0;        ///< in (-1, 0.5]
+  double yield_stress = k_infinity;  ///< Y [Pa], > 0; infinity: elastic throughout
+  double surface_energy = 0.0;       ///< dg of the particle-wall contact [J/m2], >= 0
   ElasticProfile elastic_profile = ElasticProfile::ellipse;
   RadiusRule radius_rule = RadiusRule::yielded;
   DeltaMaxRule delta_max_rule = DeltaMaxRule::running_maximum;

@@ -5,7 +5,6 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -116,8 +115,7 @@ double sign_change(Function&& function, double below, double above, double at_be
   std::uintmax_t iterations = 200;
   const auto [lower, upper] = boost::math::tools::toms748_solve(
       function, below, above, at_below, at_above,
-      [](double a, double b) { return std::abs(b - a) <= std::numeric_limits<double>::epsilon() * std::abs(b); },
-      iterations);
+      [](double a, double b) { return std::abs(b - a) <= k_epsilon * std::abs(b); }, iterations);
   return std::abs(function(lower)) < std::abs(function(upper)) ? lower : upper;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -142,7 +141,7 @@ class Destinations {
     }
     std::optional<Branch>& branch = is_strain ? strain_ : stress_;
     if (!branch) branch = growing_branch(law_, is_strain ? Measure::strain : Measure::stress);
-    if (step.target > branch->greatest) return std::numeric_limits<double>::infinity();
+    if (step.target > branch->greatest) return k_infinity;
     return step.target <= branch->least ? law_.jamming : packing_fraction_at(law_, *branch, step.target);
   }
 

@@ -1,12 +1,12 @@
 #include "plastic/semimech.hpp"
 
 #include "system/number_text.hpp"
+#include "system/resolution.hpp"
 
 #include <algorithm>
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -379,14 +379,13 @@ ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral,
     state.force_by_approach *= slope;
     return state;
   }
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   ContactState state{.regime = regime,
-                     .contact_radius = nan,
-                     .pressure = nan,
-                     .force = nan,
-                     .contact_radius_by_approach = nan,
-                     .pressure_by_approach = nan,
-                     .force_by_approach = nan};
+                     .contact_radius = k_nan,
+                     .pressure = k_nan,
+                     .force = k_nan,
+                     .contact_radius_by_approach = k_nan,
+                     .pressure_by_approach = k_nan,
+                     .force_by_approach = k_nan};
   if (regime != Regime::undefined) {
     const ContactState primary = state_in(law, regime, x);
     state.pressure = primary.pressure;

@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -28,6 +27,7 @@
 
 #include "system/difficulty.hpp"
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 #include "system/walls.hpp"
 
 namespace monograin {
@@ -267,7 +267,7 @@ class HybridSystem {
   /// Largest change of each unknown between two calls of solve() that cannot skip a branch of solutions; infinite if
   /// the solution is unique.
   virtual void branch_reach(std::span<const double> /*y*/, std::span<double> reach) const {
-    std::ranges::fill(reach, std::numeric_limits<double>::infinity());
+    std::ranges::fill(reach, k_infinity);
   }
 
  private:

@@ -1,10 +1,11 @@
 /// Limits of the models: states beyond which the equations have no solution.
 #pragma once
 
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "system/resolution.hpp"
 
 namespace monograin {
 
@@ -59,7 +60,7 @@ struct LimitPoint {
   Limit limit = Limit::no_solution;
   int contact_class = -1;       ///< -1: the particle
   std::string_view quantity{};  ///< name of the quantity, e.g. "displacement/R0"; empty: the limit has no value
-  double value = std::numeric_limits<double>::quiet_NaN();
+  double value = k_nan;
 };
 
 /// Message for a limit point: the sentence of the limit, a remark if there is one, and the value if there is one, such

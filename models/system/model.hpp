@@ -8,7 +8,6 @@
 
 #include <array>
 #include <initializer_list>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,6 +21,7 @@
 
 #include "system/citation.hpp"
 #include "system/hybrid_system.hpp"
+#include "system/resolution.hpp"
 #include "system/walls.hpp"
 
 namespace monograin {
@@ -43,8 +43,8 @@ enum class Dimension {
 
 /// Interval of admissible values. It contains its bounds unless they are marked open.
 struct Range {
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
+  double lower = -k_infinity;
+  double upper = k_infinity;
   bool lower_is_open = false;
   bool upper_is_open = false;
 

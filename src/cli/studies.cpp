@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "cli/commands.hpp"
@@ -17,6 +16,7 @@
 #include "scenario/words.hpp"
 #include "study/atlas/atlas.hpp"
 #include "study/atlas/profile.hpp"
+#include "system/resolution.hpp"
 #include "verify/regress/regress.hpp"
 
 namespace monograin {
@@ -147,7 +147,7 @@ int compare(const CompareOptions& options) {
   for (const CurveDifference& d : comparison.curves) {
     print_data("{:<28}{:>12.4e}{:>14.6g}{:>12.4e}{:>12.4e}{:>12.4e}{:>9.1f}%\n", d.y, d.linf, d.linf_at, d.l2,
                d.area_error, d.peak_error, 100.0 * d.coverage);
-    is_above = is_above || !(d.linf <= options.tolerance.value_or(std::numeric_limits<double>::infinity()));
+    is_above = is_above || !(d.linf <= options.tolerance.value_or(k_infinity));
   }
   for (const Gap& gap : comparison.gaps) print_data("{}: {} {}\n", options.other, gap.column, gap.problem);
   if (!options.tolerance) {

@@ -5,7 +5,6 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -258,7 +257,7 @@ double EventLocator::first_root(const View& before, const View& after, std::size
     candidates_.push_back({g, before.values[g] / (before.values[g] - after.values[g])});
   }
   std::ranges::sort(candidates_, {}, &Candidate::share);
-  double first = std::numeric_limits<double>::infinity();
+  double first = k_infinity;
   View up_to = after;
   for (const auto& [g, share] : candidates_) {
     if (first < up_to.xi) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "engine/explicit_form.hpp"
@@ -52,7 +51,7 @@ struct ForwardSensitivities::Side {
   GuardSet guard_set;
   std::vector<Ramp> held{};
   StepPlan plan{};
-  double step_start = 0.0;  ///< [s]
+  StepClock clock;
   double xi = 0.0;
   double begin = 0.0;  ///< step coordinate where the segment begins
   std::vector<double> begin_y{};
@@ -68,7 +67,7 @@ struct ForwardSensitivities::Side {
     for (const Channel& channel : scene.channels) held.push_back(channel.at_rest);
   }
   [[nodiscard]] HybridSystem& system() noexcept { return *scene.system; }
-  [[nodiscard]] double time() const noexcept { return step_start + xi * plan.duration; }
+  [[nodiscard]] double time() const noexcept { return clock.time(xi); }
 
   void begin_segment() {
     begin = xi;
@@ -77,7 +76,7 @@ struct ForwardSensitivities::Side {
     try {
       guard_set.values(xi, y, begin_guards);
     } catch (const std::domain_error&) {
-      std::ranges::fill(begin_guards, std::numeric_limits<double>::quiet_NaN());
+      std::ranges::fill(begin_guards, k_nan);
     }
   }
   void go_back() {
@@ -320,13 +319,14 @@ void ForwardSensitivities::start() {
 
 void ForwardSensitivities::begin_step(std::size_t step, const StepPlan& plan, std::span<const Event> log) {
   each_side([&](Number&, Side& side) {
+    const double start = side.time();
     if (step > 0) {
-      side.step_start = side.time();
       for (std::size_t c = 0; c < side.held.size(); ++c) {
         side.held[c] = ramp_after(side.plan, side.system(), static_cast<int>(c), side.xi);
       }
     }
     side.plan = plan_step(side.scene, step, side.held, side.guard_set, side.xi, side.y);
+    side.clock = {.step = step, .start = start, .duration = side.plan.duration};
     side.xi = 0.0;
     std::vector<Event> of_side;
     side.system().begin_step(side.plan.ramps, side.y, of_side);
@@ -433,7 +433,7 @@ void ForwardSensitivities::end_step(std::span<const double> y, bool is_solved) {
     for (Number& number : numbers_) {
       if (!is_placed_) place(number, 1.0, y);
       for (Side& side : number.sides) {
-        if (side.plan.duration > 0.0) side.move(1.0 - side.xi);
+        if (side.clock.duration > 0.0) side.move(1.0 - side.xi);
         side.xi = 1.0;
         if (is_solved && side.system().is_solvable()) side.system().solve(1.0, side.y);
         side.expect_no_other_guard({});
@@ -517,20 +517,19 @@ void ForwardSensitivities::find_slopes(double xi, std::span<const double> y) {
   for (std::size_t c = 0; c < slope_.size(); ++c) slope_[c] += 4.0 * (values_[1][c] - values_[0][c]) / (3.0 * length);
 }
 
-std::span<const double> ForwardSensitivities::row_at(double xi, std::span<const double> y, double start,
-                                                     double duration) {
+std::span<const double> ForwardSensitivities::row_at(double xi, std::span<const double> y, const StepClock& clock) {
   // Up to this share of the segment so far, the neighbours are moved to the instant of the row along straight lines;
   // farther away, the curvature is too large.
   constexpr double k_short = 1e-5;
   row_.clear();
-  const double time = start + xi * duration;
+  const double time = clock.time(xi);
   beside([&] {
     bool has_slopes = false;
     base_.rates(xi, y, base_rates_);
     for (Number& number : numbers_) {
       std::array<double, 2> own_xi{};
       for (std::size_t k = 0; k < 2; ++k) {
-        own_xi[k] = (time - number.sides[k].step_start) / number.sides[k].plan.duration;
+        own_xi[k] = number.sides[k].clock.step_coordinate(time);
       }
       const double beyond = (own_xi[1] - own_xi[0]) / (2.0 * number.step) - sigma_at(number, xi);
       const bool is_near = std::abs(beyond) * number.step <= k_short * (xi - begin_);

@@ -27,6 +27,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/step_clock.hpp"
 #include "engine/step_plan.hpp"
 #include "scene/scene.hpp"
 
@@ -127,8 +128,8 @@ class ForwardSensitivities {
   /// Row at the present corner or event, which moves with the numbers.
   [[nodiscard]] std::span<const double> row_here();
   /// Row at a fixed time within a step.
-  /// @param start, duration  of the step of the program [s]
-  [[nodiscard]] std::span<const double> row_at(double xi, std::span<const double> y, double start, double duration);
+  /// @param clock  of the base
+  [[nodiscard]] std::span<const double> row_at(double xi, std::span<const double> y, const StepClock& clock);
 
  private:
   struct Side;

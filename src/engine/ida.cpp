@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -310,7 +309,7 @@ class Ida final : public Integrator {
   /// tolerance; if tolerances are loose, a law need not be smooth over them.
   static int jacobian(realtype xi, realtype cj, N_Vector y, N_Vector dy, N_Vector res, SUNMatrix matrix, void* self,
                       N_Vector shifted, N_Vector, N_Vector) noexcept {
-    static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
+    static const double k_root = std::sqrt(k_epsilon);
     auto& ida = *static_cast<Ida*>(self);
     double step = 0.0;
     if (IDAGetCurrentStep(ida.memory_.get(), &step) != IDA_SUCCESS ||

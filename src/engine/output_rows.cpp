@@ -40,7 +40,7 @@ void OutputRows::place(double end, bool may_end_elsewhere) {
   if (may_end_elsewhere && !points_.empty()) points_.back().xi = k_at_end;
   for (const double instant : output_.times) {
     if (clock_.duration == 0.0) break;
-    const double xi = (instant - clock_.start) / clock_.duration;
+    const double xi = clock_.step_coordinate(instant);
     if (!(xi > k_same_instant && xi < 1.0 + k_same_instant)) continue;
     points_.push_back({xi > 1.0 - k_same_instant ? 1.0 : xi, instant});
   }
@@ -71,7 +71,7 @@ void OutputRows::write_output(const Point& point) {
   std::span<const double> derivatives;
   if (sensitivities_ != nullptr) {
     integrator_.dense_sensitivities(point.xi);
-    derivatives = sensitivities_->row_at(point.xi, state_, clock_.start, clock_.duration);
+    derivatives = sensitivities_->row_at(point.xi, state_, clock_);
   }
   if (holds_)
     held_.push_back({point, state_, {derivatives.begin(), derivatives.end()}});

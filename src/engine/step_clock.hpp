@@ -16,6 +16,8 @@ struct StepClock {
 
   /// Instant [s] of a step coordinate.
   [[nodiscard]] double time(double xi) const noexcept { return start + xi * duration; }
+  /// Step coordinate of an instant [s], in a step that takes time.
+  [[nodiscard]] double step_coordinate(double instant) const noexcept { return (instant - start) / duration; }
   /// Number of the step, from 1.
   [[nodiscard]] int label() const noexcept { return static_cast<int>(step + 1); }
   /// Beginning of a message, e.g. "step 2, t = 1.5 s: ".

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include "engine/event_locator.hpp"
 #include "engine/stepper.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -135,7 +135,7 @@ class Stepped final : public EventLocator {
 // k_least_increment (over xi) well above the round-off of xi.
 constexpr double k_share_of_step = 0.1;
 constexpr double k_least_increment = 1e-14;
-const double k_cubic_root = std::cbrt(std::numeric_limits<double>::epsilon());
+const double k_cubic_root = std::cbrt(k_epsilon);
 constexpr double k_least_size = 1e-2;  // least size of an unknown, over its scale, that scales its increment
 
 /// Forward Euler with a fixed step, as in explicit discrete-element codes: a transition takes effect at the end of the
@@ -230,7 +230,7 @@ double DifferenceJacobian::reach(double xi, double length) noexcept {
 
 void DifferenceJacobian::at(double xi, std::span<const double> z, double length, std::span<double> jacobian,
                             std::span<double> by_xi) {
-  static const double k_root = std::sqrt(std::numeric_limits<double>::epsilon());
+  static const double k_root = std::sqrt(k_epsilon);
   const std::size_t n = z.size();
   std::ranges::copy(z, point_.begin());
   form_.rates(xi, point_, base_);
@@ -268,7 +268,7 @@ double DifferenceJacobian::sample_beside(double xi, std::size_t j, double wanted
     form_.rates(xi, point_, shifted_);
   });
   const double forth = form_.change_of_rates(base_, shifted_);
-  double back = std::numeric_limits<double>::infinity();
+  double back = k_infinity;
   try {
     point_[j] = z - step;
     form_.rates(xi, point_, beyond_);

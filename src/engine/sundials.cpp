@@ -5,17 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include "engine/linear_algebra_clock.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::sundials_boundary {
 namespace {
 
 // Accuracy of the libraries' roots, over the sum of the end and the length of the step.
-constexpr double k_round_off_of_root = 100.0 * std::numeric_limits<double>::epsilon();
+constexpr double k_round_off_of_root = 100.0 * k_epsilon;
 
 bool crosses(int direction, double before, double after, double tolerance) noexcept {
   const bool rises = before < -tolerance && after >= 0.0;

@@ -10,7 +10,6 @@
 
 #include <cstdlib>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +19,7 @@
 #include "engine/c_library.hpp"
 #include "engine/explicit_form.hpp"
 #include "engine/guard_set.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::sundials_boundary {
 
@@ -66,7 +66,7 @@ inline void ignore_message(int, const char*, const char*, char*, void*) {}
 inline constexpr int k_most_failures = 50;
 
 /// Least tolerance of a corrector, over the sums in a residual: above their round-off.
-inline constexpr double k_above_round_off = 64.0 * std::numeric_limits<double>::epsilon();
+inline constexpr double k_above_round_off = 64.0 * k_epsilon;
 
 /// Factor on the length of a step in which the equations end.
 inline constexpr double k_retreat = 0.1;

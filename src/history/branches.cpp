@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "system/resolution.hpp"
@@ -116,7 +115,7 @@ std::vector<std::size_t> turning_points(std::span<const double> x) {
 
 XyCurve first_loading(const XyCurve& curve) {
   XyCurve loading;
-  double largest = -std::numeric_limits<double>::infinity();
+  double largest = -k_infinity;
   for (std::size_t k = 0; k < curve.x.size(); ++k) {
     if (!(curve.x[k] > largest) || !std::isfinite(curve.y[k])) continue;
     largest = curve.x[k];
@@ -129,7 +128,7 @@ XyCurve first_loading(const XyCurve& curve) {
 std::vector<Excursion> excursions(const XyCurve& curve) {
   enum class Phase { loading, unloading, reloading, none };  // none: x falls again before the reload is complete
   std::vector<Excursion> result;
-  double largest = -std::numeric_limits<double>::infinity();
+  double largest = -k_infinity;
   std::size_t turn = 0;  // the last row at the largest x
   Phase phase = Phase::loading;
   for (std::size_t k = 0; k < curve.x.size(); ++k) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -46,7 +45,7 @@ struct Curve {
 };
 
 [[nodiscard]] double range_of(std::span<const double> x) {
-  double lowest = std::numeric_limits<double>::infinity();
+  double lowest = k_infinity;
   double highest = -lowest;
   for (const double value : x) {  // comparisons with nan are false: rows without x do not count
     if (value < lowest) lowest = value;
@@ -156,7 +155,7 @@ class PieceReader {
 
 /// Difference of two recorded values; infinite if only one of them is defined, NaN if none is.
 [[nodiscard]] double recorded_difference(double reference, double other) noexcept {
-  if (std::isnan(reference) != std::isnan(other)) return std::numeric_limits<double>::infinity();
+  if (std::isnan(reference) != std::isnan(other)) return k_infinity;
   return reference == other ? 0.0 : other - reference;  // equal infinities do not differ
 }
 
@@ -269,7 +268,7 @@ struct PathIntegrals {
   CurveDifference result;
   double largest = 0.0;
   double largest_reference = 0.0;
-  double peak_place = -std::numeric_limits<double>::infinity();
+  double peak_place = -k_infinity;
   double reference_at_peak = 0.0;
   for (const auto& [x, reference, difference, counts] : samples) {
     if (std::abs(difference) > largest) {

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
+
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -16,7 +17,7 @@ constexpr double k_worth_a_warning = 1e-6;
 // Bound of the global error of an integration with error control, over its rtol.
 constexpr double k_error_over_rtol = 100.0;
 // Bound of the round-off of an overlap over R0: an overlap is a difference of a few lengths of the order of R0.
-constexpr double k_overlap_round_off = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double k_overlap_round_off = 16.0 * k_epsilon;
 
 }  // namespace
 
@@ -29,7 +30,7 @@ std::optional<DissipationFall> largest_dissipation_fall(const Table& history, do
     if (history.columns()[c].name.ends_with(".force")) forces.push_back(c);
   }
   DissipationFall largest;
-  double greatest = -std::numeric_limits<double>::infinity();
+  double greatest = -k_infinity;
   double time_of_greatest = 0.0;
   double round_off = 0.0;
   for (std::size_t row = 0; row < history.row_count(); ++row) {

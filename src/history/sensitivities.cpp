@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -118,8 +117,7 @@ class Differences {
               const Variant& upper, double width)
       : history_(history), base_(base), lower_(lower), upper_(upper), width_(width) {
     same_events_ = std::min(same_events(events, lower.record.events), same_events(events, upper.record.events));
-    const double end =
-        same_events_ < events.row_count() ? events.at(same_events_, k_time) : std::numeric_limits<double>::infinity();
+    const double end = same_events_ < events.row_count() ? events.at(same_events_, k_time) : k_infinity;
     const auto& corners = base.corners();
     const auto is_same = [&](const Segments& other, std::size_t corner) {
       return corner < other.corners().size() && other.side(other.corners()[corner]) == base.side(corners[corner]);

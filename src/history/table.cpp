@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
@@ -13,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "scenario/text_file.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -107,7 +107,7 @@ void append_row(std::string& text, const Table& table, std::size_t row, int digi
 /// Value of a number beyond the range of double, as strtod gives it: zero or infinity with its sign.
 [[nodiscard]] double out_of_range_value(std::string_view cell) noexcept {
   const bool is_tiny = cell.find("e-") != std::string_view::npos || cell.find("E-") != std::string_view::npos;
-  const double magnitude = is_tiny ? 0.0 : std::numeric_limits<double>::infinity();
+  const double magnitude = is_tiny ? 0.0 : k_infinity;
   return cell.starts_with('-') ? -magnitude : magnitude;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "scenario/section.hpp"
 #include "scenario/units.hpp"
 #include "scenario/words.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -58,13 +58,12 @@ void read_ludwik(Reading& reading, const Section& material, const Language& lang
   const auto eps_max = section.number("eps_max");
   if (reading.faults.size() > faults_before || !yield_stress || !strength || !exponent || !eps_max) return;
   try {
-    const PowerLaw power_law =
-        language.model->power_law_of({.youngs_modulus = modulus.value_or(std::numeric_limits<double>::infinity()),
-                                      .yield_stress = *yield_stress,
-                                      .strength = *strength,
-                                      .exponent = *exponent,
-                                      .largest_strain = *eps_max,
-                                      .fits_both = section.text("fit") == "both"});
+    const PowerLaw power_law = language.model->power_law_of({.youngs_modulus = modulus.value_or(k_infinity),
+                                                             .yield_stress = *yield_stress,
+                                                             .strength = *strength,
+                                                             .exponent = *exponent,
+                                                             .largest_strain = *eps_max,
+                                                             .fits_both = section.text("fit") == "both"});
     scenario.material.emplace("strength", power_law.strength);
     scenario.material.emplace("hardening_exponent", power_law.exponent);
   } catch (const std::logic_error& error) {  // objections of the fit

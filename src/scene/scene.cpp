@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "catalogue.hpp"
@@ -99,11 +98,11 @@ struct Program {
 
 /// Displacement and force at which a condition ends a ramp; infinity if only a run of the model can show it.
 Reach end_of(const Program& program, const Until& until) {
-  Reach end{.displacement = std::numeric_limits<double>::infinity(), .force = std::numeric_limits<double>::infinity()};
+  Reach end{.displacement = k_infinity, .force = k_infinity};
   if (!(until.value > 0.0) && !until.is_event()) return end;
   if (program.model.reach != nullptr) end = program.model.reach(program.input, until);
   // A centre that moves follows the walls: they move farther than their contacts are deep.
-  if (program.moves_centre) end.displacement = std::numeric_limits<double>::infinity();
+  if (program.moves_centre) end.displacement = k_infinity;
   if (until.is_of(Quantity::displacement)) end.displacement = until.value;
   if (until.is_of(Quantity::force)) end.force = until.value;
   return end;

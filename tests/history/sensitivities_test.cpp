@@ -11,6 +11,7 @@
 
 #include "history/run.hpp"
 #include "scenario/faults.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin::sensitivities_test {
 namespace {
@@ -107,20 +108,8 @@ TEST(Sensitivities, HaveTheErrorThatTheySay) {
 }
 
 TEST(Sensitivities, HaveTheErrorThatTheySayNextToALimit) {
-  const std::string text = R"toml(model = "nonlocal"
-[particle]
-radius = "10 mm"
-[material]
-youngs_modulus = "1.85 MPa"
-poisson_ratio = 0.48
-[loading]
-configuration = "oblique-die"
-steps = [{ displacement = "0.4 R0", duration = "1 s" }]
-[output]
-points = 10
-[sensitivities]
-keys = ["material.poisson_ratio"]
-)toml";
+  const std::string text = read_text(std::string(MONOGRAIN_SOURCE_DIR) + "/scenarios/nonlocal.toml") +
+                           "[sensitivities]\nkeys = [\"material.poisson_ratio\"]\n";
   const std::string name = "d(lateral-x.force)/d(material.poisson_ratio)";
   const std::vector<double> close = column(run_of(text), name);
   const HistoryRun run = run_of(text, {"numerics.integrator=odeint-dopri5"});

@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "system/limit.hpp"
@@ -45,7 +44,7 @@ void FreeCentre::sum_up(const CentreWalls& walls, std::span<const Role> roles, c
   prescribed_ = 0.0;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     forces_[i] = 0.0;
-    overlaps_[i] = -std::numeric_limits<double>::infinity();
+    overlaps_[i] = -k_infinity;
     if (!acts(i)) continue;
     const double along = lines_.along(i);
     Load& line = loads_[lines_.line_of(i)];
@@ -109,7 +108,7 @@ FreeCentre::Vector FreeCentre::flight(const CentreWalls& walls, std::span<const 
   const double size = push.norm();
   const Vector path = -push / size;
   std::optional<std::size_t> nearest;
-  double distance = std::numeric_limits<double>::infinity();
+  double distance = k_infinity;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     const double approach = lines_.arm(i).dot(path);
     if (roles[i] != Role::bearing || walls.prescribed_force(i) || approach <= k_no_direction) continue;
@@ -160,7 +159,7 @@ void FreeCentre::lend_stiffness(const CentreWalls& walls, std::span<const Role> 
 /// Position at which forces balance, by Newton's method with line search from c.
 /// @throws DomainError if no balance is found, or prescribed forces drive the centre away
 FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const Role> roles, Vector c) {
-  double last = std::numeric_limits<double>::infinity();
+  double last = k_infinity;
   sum_up(walls, roles, c);
   for (int k = 0; k < k_most_steps; ++k) {
     const Vector net = net_force();

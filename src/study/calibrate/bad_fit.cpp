@@ -28,7 +28,7 @@ std::vector<std::size_t> rows_that_count(const Calibration& calibration) {
 
 /// Lowest and highest y of the rows that count.
 std::pair<double, double> range_of(const Calibration& calibration) {
-  std::pair<double, double> range(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
+  std::pair<double, double> range(k_infinity, -k_infinity);
   for (const std::size_t row : rows_that_count(calibration)) {
     range.first = std::min(range.first, calibration.y.values[row]);
     range.second = std::max(range.second, calibration.y.values[row]);

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "scenario/units.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -16,7 +16,7 @@ constexpr int k_most_runs = 80;
 constexpr int k_secant_runs = 10;      // after these runs brackets are halved, because secants may jump back and forth
                                        // about a jump
 constexpr double k_least_slope = 0.1;  // of the shown displacement over the particle's; 1 for a rigid machine
-constexpr double k_least_step = 1e3 * std::numeric_limits<double>::epsilon();  // of a secant, over the largest x
+constexpr double k_least_step = 1e3 * k_epsilon;  // of a secant, over the largest x
 
 /// The last trials of one displacement that showed too little and too much.
 class Bracket {

@@ -142,7 +142,7 @@ void Replay::follow(std::vector<double> values) {
   resolution_ = 0.0;
   // Prescribed quantities follow the program exactly, except a force on a contact that has been lost.
   for (const double value : values_) resolution_ = std::max(resolution_, k_same_force * std::abs(value));
-  if (columns_.control != Step::Kind::force) resolution_ = std::numeric_limits<double>::infinity();
+  if (columns_.control != Step::Kind::force) resolution_ = k_infinity;
 }
 
 bool Replay::set(std::string_view path, double value) {

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <system_error>
@@ -15,6 +14,7 @@
 
 #include "catalogue.hpp"
 #include "scenario/words.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -59,8 +59,8 @@ constexpr std::size_t k_longest = 400;  ///< characters of a formula; also bound
 /// Reduces a column to one value by min, max, last or end. All but end skip undefined rows, such as the pressure before
 /// first touch; the result is NaN if no row is defined.
 [[nodiscard]] double reduced(std::string_view function, const Values& values) {
-  if (function == "end") return values.empty() ? std::numeric_limits<double>::quiet_NaN() : values.back();
-  double result = std::numeric_limits<double>::quiet_NaN();
+  if (function == "end") return values.empty() ? k_nan : values.back();
+  double result = k_nan;
   for (const double value : values) {
     if (std::isnan(value)) continue;
     const bool is_next =

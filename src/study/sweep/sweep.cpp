@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -23,6 +22,7 @@
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "study/sweep/sweep_journal.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -58,7 +58,7 @@ struct Outcome {
 
 /// Largest value of a column, without undefined values.
 [[nodiscard]] double largest(const Table& history, std::size_t column) {
-  double result = std::numeric_limits<double>::quiet_NaN();
+  double result = k_nan;
   for (std::size_t row = 0; row < history.row_count(); ++row) result = std::fmax(result, history.at(row, column));
   return result;
 }

@@ -6,7 +6,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -420,7 +419,7 @@ BenchScene measure_scene(const CheckedScenario& scenario, const BenchSettings& s
 BenchProfile profile_scene(const CheckedScenario& scenario, const std::string& name) {
   const std::string integrator = choose_integrator(name, *make_scene(scenario).system).used;
   BenchProfile profile{.scene = scenario.name, .integrator = integrator};
-  double least = std::numeric_limits<double>::infinity();
+  double least = k_infinity;
   std::vector<Stopwatch> watches;
   watches.emplace_back([&] { return time_once(scenario, integrator, scenario.numerics.rtol); });
   // The fastest profiled run is kept, as the fastest run is without profile: other load has disturbed it least.

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <ctime>
 #include <functional>
-#include <limits>
 #include <stdexcept>
 #include <utility>
+
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -20,7 +21,7 @@ using View = std::span<const double>;
 /// Time for one reading of the clock [s], on an otherwise idle processor.
 double clock_cost() {
   constexpr int k_readings = 100;
-  double least = std::numeric_limits<double>::infinity();
+  double least = k_infinity;
   for (int batch = 0; batch < 20; ++batch) {
     const auto start = Clock::now();
     Clock::time_point last = start;

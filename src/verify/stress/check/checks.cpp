@@ -9,7 +9,6 @@
 #include <exception>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -102,7 +101,7 @@ bool stops_at_corner(const Run& run, const Run& other, double tolerance) {
 
 /// Earliest end [s] of the runs that a limit has ended; infinity if there is none.
 double first_end(const std::vector<Run>& runs) {
-  double first = std::numeric_limits<double>::infinity();
+  double first = k_infinity;
   for (const Run& run : runs) {
     if (run.record.status == RunStatus::complete) continue;
     first = std::min(first, end_time(run));
@@ -402,7 +401,7 @@ class SceneCheck {
     return distance_between(a.record.history, b.record.history, nothing_, larger, last);
   }
   [[nodiscard]] Distance between(const Run& a, const Run& b, const Magnification& larger = {}) const {
-    return distance_of(a, b, larger, std::numeric_limits<double>::infinity());
+    return distance_of(a, b, larger, k_infinity);
   }
 
   /// Distance at the last rows of two runs; nan if either is not complete.

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
+
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -156,7 +157,7 @@ double largest_of_kind(const Table& table, std::string_view kind) {
 }
 
 double deepest_overlap(const Table& table) {
-  double deepest = -std::numeric_limits<double>::infinity();
+  double deepest = -k_infinity;
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
     if (kind_of(table.columns()[c]) != "overlap") continue;
     for (std::size_t row = 0; row < table.row_count(); ++row) deepest = std::max(deepest, table.at(row, c));

@@ -3,13 +3,13 @@
 
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "history/table.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 
@@ -68,7 +68,6 @@ struct Negligible {
 
 /// Distance of two histories at the output points that both have, up to the time `last` [s].
 [[nodiscard]] Distance distance_between(const Table& first, const Table& second, const Negligible& nothing = {},
-                                        const Magnification& larger = {},
-                                        double last = std::numeric_limits<double>::infinity());
+                                        const Magnification& larger = {}, double last = k_infinity);
 
 }  // namespace monograin

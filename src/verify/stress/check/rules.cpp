@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -397,7 +396,7 @@ void check_work(const Run& run, Violations& found) {
 }  // namespace
 
 double softest(const CheckedScenario& scenario) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = k_infinity;
   for (const QuantityKey& key : find_model(scenario.model)->material) {
     const auto found = scenario.material.find(std::string(key.name));
     if (key.dimension == Dimension::stress && found != scenario.material.end() && found->second > 0.0) {

@@ -1,7 +1,6 @@
 /// Rules that every run has to keep by itself, whatever its model, walls, program and integrator.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "history/run.hpp"
 #include "scenario/scenario.hpp"
 #include "stress/checks.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 
@@ -17,7 +17,7 @@ namespace monograin {
 inline constexpr double k_finest_rtol = 1e-11;
 
 /// Relative change of a scene's data that stands for round-off on the path from a text to a state.
-inline constexpr double k_stress_round_off = 16.0 * std::numeric_limits<double>::epsilon();
+inline constexpr double k_stress_round_off = 16.0 * k_epsilon;
 
 /// Checks a run by itself: it completes, or stops at a stated limit that no touching wall contradicts; every value is
 /// finite; contacts without adhesion do not pull; the dissipation never falls without a warning; monotone quantities do

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <numbers>
 #include <span>
 #include <string>
@@ -18,6 +17,7 @@
 #include "scenario/integrators.hpp"
 #include "scene/scene.hpp"
 #include "stress/draw.hpp"
+#include "system/resolution.hpp"
 #include "verify/stress/draw/programs.hpp"
 #include "verify/stress/draw/walls.hpp"
 
@@ -162,7 +162,7 @@ void refine(Dice& dice, StressScene& scene, const ProgramBounds& bounds, const f
   const Places places = find_places(scene, tables);
   if (!places.of_events.empty() && dice.happens(0.7)) {
     StressStep corner = places.of_events[dice.below(places.of_events.size())];
-    const double round_off = std::numeric_limits<double>::epsilon() * std::floor(dice.uniform(-4.0, 5.0));
+    const double round_off = k_epsilon * std::floor(dice.uniform(-4.0, 5.0));
     const double nearby = dice.one_of({0.0, 0.0, 1e-14, 1e-12, 1e-10, 1e-8}) * dice.uniform(-1.0, 1.0);
     corner.target *= 1.0 + round_off + nearby;
     corner.until.clear();
