@@ -8,6 +8,7 @@
 #include "scenario/cells.hpp"
 #include "scenario/document.hpp"
 #include "scenario/faults.hpp"
+#include "scenario/plain_paths.hpp"
 
 namespace monograin {
 namespace {
@@ -26,20 +27,21 @@ std::size_t offset_of(std::string_view text, const toml::source_position& positi
   return at;
 }
 
-void apply(std::string& text, const TextEdit& edit) {
-  const std::size_t dot = edit.path.rfind('.');
-  const std::string_view key = std::string_view(edit.path).substr(dot + 1);
+/// @param path  without a range
+void apply(std::string& text, std::string_view path, const std::string& new_value) {
+  const std::size_t dot = path.rfind('.');
+  const std::string_view key = path.substr(dot + 1);
   const toml::table root = parse_document(text, "text");
-  const toml::table* table = root.at_path(std::string_view(edit.path).substr(0, dot)).as_table();
+  const toml::table* table = root.at_path(path.substr(0, dot)).as_table();
   if (const toml::node* value = table == nullptr ? nullptr : table->get(key)) {
     const std::size_t begin = offset_of(text, value->source().begin);
-    text.replace(begin, offset_of(text, value->source().end) - begin, edit.value);
+    text.replace(begin, offset_of(text, value->source().end) - begin, new_value);
     return;
   }
   const std::size_t begin = table == nullptr ? text.size() : offset_of(text, table->source().begin);
   const bool has_header = begin < text.size() && text[begin] == '[' && !table->is_inline();
-  if (!has_header) throw std::runtime_error(fmt::format("there is no place for '{}'", edit.path));
-  const std::string line = fmt::format("{} = {}\n", key, edit.value);
+  if (!has_header) throw std::runtime_error(fmt::format("there is no place for '{}'", path));
+  const std::string line = fmt::format("{} = {}\n", key, new_value);
   const std::size_t end = text.find('\n', begin);
   if (end == std::string::npos) {
     text += '\n' + line;
@@ -51,7 +53,9 @@ void apply(std::string& text, const TextEdit& edit) {
 }  // namespace
 
 std::string with_values(std::string text, const std::vector<TextEdit>& edits) {
-  for (const TextEdit& edit : edits) apply(text, edit);
+  for (const TextEdit& edit : edits) {
+    for (const std::string& path : plain_paths(edit.path)) apply(text, path, edit.value);
+  }
   return text;
 }
 

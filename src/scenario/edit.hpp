@@ -9,7 +9,7 @@ namespace monograin {
 
 /// A new value of a key.
 struct TextEdit {
-  std::string path;   ///< "table.key", "table.list[1].key"
+  std::string path;   ///< "table.key", "table.list[1].key", "table.list[1-4].key"
   std::string value;  ///< as TOML
 };
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "scenario/overrides.hpp"
+#include "scenario/plain_paths.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
@@ -115,12 +117,19 @@ class KeyFinder {
 }  // namespace
 
 KeyAnswer key_at(std::string_view path, const toml::table& root, std::string_view model) {
-  const auto parts = parse_key_path(path);
-  if (!parts) {
-    return {{}, fmt::format("'{}' is not the path of a key; expected for example material.yield_stress", shown(path))};
-  }
   const Language& language = language_of(model);
-  return KeyFinder(path, *parts, language).find(root);
+  KeyAnswer answer;
+  for (const std::string& plain : plain_paths(path)) {
+    const auto parts = parse_key_path(plain);
+    if (!parts) {
+      return {{},
+              fmt::format("'{}' is not the path of a key; expected for example material.yield_stress", shown(path))};
+    }
+    KeyAnswer found = KeyFinder(plain, *parts, language).find(root);
+    if (!found.spec) return found;
+    if (!answer.spec) answer = std::move(found);
+  }
+  return answer;
 }
 
 }  // namespace monograin

@@ -17,7 +17,7 @@ struct KeyAnswer {
   std::string problem;  ///< empty: there is a spec
 };
 
-/// @param path   as in overrides: `material.yield_stress`, `loading.steps[0].displacement`
+/// @param path   as in overrides: `material.yield_stress`, `loading.steps[0].displacement`, `loading.wall[2-5].gap`
 /// @param root   the scenario: its steps and walls determine which keys they can have
 /// @param model  name of the model whose language is used
 [[nodiscard]] KeyAnswer key_at(std::string_view path, const toml::table& root, std::string_view model);

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 
 #include "scenario/language.hpp"
+#include "scenario/plain_paths.hpp"
 
 namespace monograin {
 namespace {
@@ -48,13 +50,27 @@ void set_number(CheckedScenario& scenario, std::string_view path, double value) 
   } else if (path.starts_with(scenario.model + '.')) {
     scenario.options.insert_or_assign(std::string(path.substr(scenario.model.size() + 1)), value);
   } else {
-    for (std::size_t wall = 0; wall < scenario.loading.walls.size(); ++wall) {
-      if (path != gap_path(wall)) continue;
+    for (const std::string& plain : plain_paths(path)) {
+      std::size_t wall = 0;
+      while (wall < scenario.loading.walls.size() && plain != gap_path(wall)) ++wall;
+      if (wall == scenario.loading.walls.size()) {
+        throw std::logic_error(fmt::format("'{}' is no number that can be set on its own", path));
+      }
       scenario.loading.walls[wall].gap = value;
-      return;
     }
-    throw std::logic_error(fmt::format("'{}' is no number that can be set on its own", path));
   }
+}
+
+std::optional<NumberKey> number_of_range(const std::vector<NumberKey>& numbers, std::string_view path) {
+  const std::vector<std::string> paths = plain_paths(path);
+  std::optional<NumberKey> number;
+  for (const std::string& plain : paths) {
+    const auto known = std::ranges::find(numbers, plain, &NumberKey::path);
+    if (paths.size() == 1 || known == numbers.end()) return std::nullopt;
+    number = *known;
+  }
+  number->path = path;
+  return number;
 }
 
 }  // namespace monograin

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,10 @@ struct NumberKey {
 
 /// Path of the gap of a wall, counted from 0: "loading.wall[1].gap".
 [[nodiscard]] std::string gap_path(std::size_t wall);
+
+/// One number for all keys that a path with a range names, such as "loading.wall[2-5].gap"; none without a range, or if
+/// one of the keys is not among the given numbers.
+[[nodiscard]] std::optional<NumberKey> number_of_range(const std::vector<NumberKey>& numbers, std::string_view path);
 
 /// Sets a number other than the radius, without checking the range of its key.
 /// @param value  [SI]

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scenario/document.hpp"
+#include "scenario/plain_paths.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
@@ -83,14 +84,16 @@ class Override {
   void apply(toml::table& root, std::optional<double> number = {}) {
     const std::size_t equals = text_.find('=');
     if (equals == std::string::npos) return fault("expected key=value");
-    const auto path = parse_key_path(trimmed_key(equals));
-    if (!path) {
-      return fault(fmt::format("'{}' is not the path of a key; expected for example loading.steps[0].rate",
-                               shown(std::string_view(text_).substr(0, equals))));
+    for (const std::string& plain : plain_paths(trimmed_key(equals))) {
+      const auto path = parse_key_path(plain);
+      if (!path) {
+        return fault(fmt::format("'{}' is not the path of a key; expected for example loading.steps[0].rate",
+                                 shown(std::string_view(text_).substr(0, equals))));
+      }
+      std::optional<toml::table> holder = number ? holder_of(*number) : parse_value(equals);
+      if (!holder) return;
+      put(root, *path, *holder);
     }
-    std::optional<toml::table> holder = number ? holder_of(*number) : parse_value(equals);
-    if (!holder) return;
-    put(root, *path, *holder);
   }
 
  private:

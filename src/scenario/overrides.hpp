@@ -25,7 +25,8 @@ using PathPart = std::variant<std::string, std::size_t>;
 
 /// Sets the value of one `key=value` text in the tree. New nodes give the override as their file.
 ///
-/// An index one past the end of an array appends to it.
+/// An index one past the end of an array appends to it. A path with a range, `loading.wall[2-5].gap`, sets the key of
+/// each entry.
 ///
 /// Adds a fault for a path that the tree cannot follow, and for a value that is not TOML. The tree is then
 /// unchanged, except for tables made for the first parts of the path.

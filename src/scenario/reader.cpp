@@ -12,6 +12,7 @@
 #include "scenario/key_path.hpp"
 #include "scenario/language.hpp"
 #include "scenario/loading_reader.hpp"
+#include "scenario/plain_paths.hpp"
 #include "scenario/rules.hpp"
 #include "scenario/section.hpp"
 #include "scenario/units.hpp"
@@ -188,13 +189,17 @@ ReadQuantity quantity_at(const std::string& path, const toml::table& tree, const
   const KeyAnswer answer = key_at(path, tree, scenario.model);
   if (!answer.spec) return {{}, answer.problem};
   const KeySpec& spec = *answer.spec;
-  const toml::node* node = tree.at_path(path).node();
   if (spec.kind != KeySpec::Kind::quantity) return {{}, fmt::format("'{}' is no quantity", shown(path))};
-  if (node == nullptr) return {{}, fmt::format("the scenario does not give '{}'", shown(path))};
-  std::optional<double> number = node->value<double>();
-  if (const auto text = node->value<std::string>()) {
-    const auto radius = scenario.radius > 0.0 ? std::optional(scenario.radius) : std::nullopt;
-    number = parse_quantity(*text, spec.dimension, radius).value;
+  const auto radius = scenario.radius > 0.0 ? std::optional(scenario.radius) : std::nullopt;
+  std::optional<double> number;
+  for (const std::string& plain : plain_paths(path)) {
+    const toml::node* node = tree.at_path(plain).node();
+    if (node == nullptr) return {{}, fmt::format("the scenario does not give '{}'", shown(plain))};
+    const auto text = node->value<std::string>();
+    const std::optional<double> value =
+        text ? parse_quantity(*text, spec.dimension, radius).value : node->value<double>();
+    if (number && value != number) return {{}, fmt::format("'{}' names different numbers", shown(path))};
+    number = value;
   }
   if (number && *number == 0.0) return {{}, fmt::format("'{}' is 0, which gives its step no size", shown(path))};
   const std::string_view si = dimension_info(spec.dimension).si;

@@ -86,6 +86,27 @@ TEST(Numbers, HaveTheGapOfEachWall) {
   EXPECT_THROW(set_number(scenario, "loading.wall[2].gap", 3e-6), std::logic_error);
 }
 
+TEST(Numbers, OfARangeAreSetTogether) {
+  CheckedScenario scenario = parse_scenario(k_late_wall_text, "s.toml");
+  set_number(scenario, "loading.wall[0-1].gap", 3e-6);
+  EXPECT_EQ(scenario.loading.walls[0].gap, 3e-6);
+  EXPECT_EQ(scenario.loading.walls[1].gap, 3e-6);
+  const std::vector<NumberKey> numbers = number_keys(scenario);
+  const auto gap = number_of_range(numbers, "loading.wall[0-1].gap");
+  ASSERT_TRUE(gap);
+  EXPECT_EQ(gap->path, "loading.wall[0-1].gap");
+  EXPECT_EQ(gap->dimension, Dimension::length);
+  EXPECT_FALSE(number_of_range(numbers, "loading.wall[0-2].gap")) << "there are two walls";
+  EXPECT_FALSE(number_of_range(numbers, "loading.wall[0].gap")) << "that is no range";
+}
+
+TEST(Edit, PutsOneValueToAllKeysOfARange) {
+  const std::string text = with_values(k_late_wall_text, {{"loading.wall[0-1].gap", "1e-6"}});
+  const CheckedScenario scenario = parse_scenario(text, "edited.toml");
+  EXPECT_EQ(scenario.loading.walls[0].gap, 1e-6);
+  EXPECT_EQ(scenario.loading.walls[1].gap, 1e-6);
+}
+
 TEST(Edit, PutsAGapIntoTheTableOfItsWall) {
   const std::string commented = replaced(replaced(k_late_wall_text, "[[loading.wall]]", "[[loading.wall]]  # on top"),
                                          "gap = \"0.002 R0\"", "gap = \"0.002 R0\"  # late");

@@ -63,6 +63,8 @@ TEST(KeyPaths, ThatLeadNowhereAreToldWhy) {
       {"loading.steps[0].force", "unknown key 'force'"},
       {"particle.radius.value", "has nothing at"},
       {"loading.wall[3].gap", "has nothing at"},
+      {"loading.wall[0-3].gap", "the scenario has nothing at 'loading.wall[1].gap'"},
+      {"loading.wall[0-].gap", "is not the path of a key"},
   };
   for (const auto& [path, problem] : wrong) {
     const KeyAnswer answer = ask(path);

@@ -28,6 +28,14 @@ TEST(Overrides, TakeBareTextsAsStrings) {
 
 TEST(Overrides, MayHaveSpacesAroundTheKey) { EXPECT_EQ(with({" particle.radius = 0.5"}).radius, 0.5); }
 
+TEST(Overrides, SetAllEntriesOfARange) {
+  const auto gaps = [](const std::vector<std::string>& overrides) {
+    const CheckedScenario scenario = parse_scenario(k_late_wall_text, "s.toml", overrides);
+    return std::vector{scenario.loading.walls[0].gap, scenario.loading.walls[1].gap};
+  };
+  EXPECT_EQ(gaps({"loading.wall[0-1].gap=3 um"}), gaps({"loading.wall[0].gap=3 um", "loading.wall[1].gap=3 um"}));
+}
+
 TEST(Overrides, MakeTablesOnTheWay) {
   EXPECT_TRUE(std::get<bool>(with({"mdr.strict=true"}).options.at("strict")));
   EXPECT_EQ(with({"loading.steps[0].until.event=yield"}).loading.steps[0].until[0].event, "yield");

@@ -12,6 +12,7 @@
 
 #include "scenario/document.hpp"
 #include "scenario/measured_data.hpp"
+#include "scenario/plain_paths.hpp"
 #include "scenario/section.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/units.hpp"
@@ -309,7 +310,10 @@ class CalibrationReader {
   // --- lengths of the scenario
 
   [[nodiscard]] bool is_free(std::string_view path) const {
-    return std::ranges::find(made_.free, path, [](const auto& free) { return free.key.path; }) != made_.free.end();
+    return std::ranges::any_of(made_.free, [&](const FreeParameter& free) {
+      const std::vector<std::string> paths = plain_paths(free.key.path);
+      return std::ranges::find(paths, path) != paths.end();
+    });
   }
 
   /// Displacements count from first touch, whatever the gap before it: no fitted gap can belong to the driven wall.

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "scenario/document.hpp"
 #include "scenario/edit.hpp"
+#include "scenario/plain_paths.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/units.hpp"
 #include "scenario/words.hpp"
@@ -37,7 +39,7 @@ std::vector<ForeignKey> foreign_keys(const toml::table* table, const std::vector
     } else if (name.starts_with("loading.wall")) {
       foreign.push_back({name,
                          "cannot be free; expected the gap of a wall of configuration = \"walls\", counted from 0, for "
-                         "example \"loading.wall[1].gap\""});
+                         "example \"loading.wall[1].gap\", or one gap of several walls, \"loading.wall[2-5].gap\""});
     } else if (inner != nullptr && !inner->contains("from") && name.find('.') == std::string_view::npos) {
       foreign.push_back({name,
                          "is a table; expected the whole path in quotes, for example "
@@ -236,8 +238,12 @@ void read_prior(Reading& reading, const Section& priors, FreeParameter& paramete
 std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const ScenarioText& scenario) {
   std::vector<NumberKey> numbers = number_keys(scenario.checked);
   std::ranges::move(machine_keys(), std::back_inserter(numbers));
+  const toml::table* table = root.table("free", "").table;
+  for (const auto& entry : *table) {
+    if (auto number = number_of_range(numbers, entry.first.str())) numbers.push_back(*std::move(number));
+  }
   const Keys keys = free_keys(numbers);
-  const std::vector<ForeignKey> foreign = foreign_keys(root.table("free", "").table, numbers);
+  const std::vector<ForeignKey> foreign = foreign_keys(table, numbers);
   const Section free(reading, root.table("free", "[free]"), keys, foreign);
   std::vector<std::pair<SourceLocation, const NumberKey*>> found;
   for (const NumberKey& number : numbers) {
@@ -249,8 +255,13 @@ std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const 
     reading.faults.add(found[k_most_parameters].first,
                        fmt::format("{} parameters are free; expected at most {}", found.size(), k_most_parameters));
   }
+  std::set<std::string> free_paths;
   std::vector<FreeParameter> parameters;
   for (const auto& [where, number] : found) {
+    for (std::string& path : plain_paths(number->path)) {
+      if (const auto [same, is_new] = free_paths.insert(std::move(path)); !is_new)
+        reading.faults.add(where, fmt::format("'{}' is free already; expected it once", *same));
+    }
     if (auto parameter = read_bounds(reading, free, scenario, *number)) parameters.push_back(std::move(*parameter));
   }
   return parameters;

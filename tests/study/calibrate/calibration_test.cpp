@@ -325,6 +325,52 @@ fixed = true
   EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 3.1e-4, 1.0, 1e-6);
 }
 
+// A particle that is loose in its die: one clearance on all sides.
+TEST_F(CalibrationTest, FindsTheClearanceThatSeveralWallsShare) {
+  std::string scenario = R"(model = "mdr"
+[particle]
+radius = "10 mm"
+[material]
+youngs_modulus = "1 GPa"
+poisson_ratio = 0.3
+yield_stress = "40 MPa"
+[loading]
+configuration = "walls"
+steps = [{ displacement = "0.4 R0", duration = "1 s" }]
+[[loading.wall]]
+name = "top"
+normal = [0, 0, 1]
+[[loading.wall]]
+name = "bottom"
+normal = [0, 0, -1]
+)";
+  for (const auto& [name, normal] :
+       {std::pair("side", "[1, 0, 0]"), {"left", "[-1, 0, 0]"}, {"front", "[0, 1, 0]"}, {"back", "[0, -1, 0]"}}) {
+    scenario += std::string("[[loading.wall]]\nname = \"") + name + "\"\nnormal = " + normal +
+                "\ngap = \"0.1 mm\"\nfixed = true\n";
+  }
+  write("s.toml", scenario);
+  write("c.toml", replaced(replaced(k_free_gap, "late.force[N]", "side.force[N]"),
+                           "loading.wall[1].gap\" = { from = 0, to = \"0.1 mm\", start = 0 }",
+                           "loading.wall[2-5].gap\" = { from = \"0.01 R0\", to = \"0.08 R0\" }"));
+  write("d.csv", csv_of(measure(scenario, {"loading.wall[2-5].gap=0.31 mm"}, "top.displacement", "side.force"),
+                        "top.displacement[m],side.force[N],w"));
+  const Calibration calibration = read();
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_NEAR(result.solution.parameters[0] / 3.1e-4, 1.0, 1e-6);
+  const CheckedScenario fitted = parse_scenario(fitted_scenario_text(calibration, result), "fitted.toml");
+  for (std::size_t wall = 2; wall < 6; ++wall) EXPECT_EQ(fitted.loading.walls[wall].gap, result.solution.parameters[0]);
+}
+
+TEST_F(CalibrationTest, RefusesAGapThatIsFreeTwice) {
+  write("s.toml", k_late_wall_text);
+  write("c.toml", std::string(k_free_gap) + "\"loading.wall[0-1].gap\" = { from = 0, to = \"0.1 mm\" }\n");
+  write("d.csv", csv_of(late_hertz(3.7e-5, k_radius), "top.displacement[m],late.force[N],w"));
+  const std::vector<std::string> found = faults();
+  ASSERT_GE(found.size(), 1U);
+  EXPECT_EQ(found[0], "c.toml:9:1: 'loading.wall[1].gap' is free already; expected it once");
+}
+
 TEST_F(CalibrationTest, RefusesTheGapOfTheWallThatXDrives) {
   write("s.toml", k_late_wall_text);
   write("c.toml", replaced(k_free_gap, "wall[1]", "wall[0]"));

@@ -1,0 +1,15 @@
+/// Paths that name several keys at once.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace monograin {
+
+/// The paths that a path with ranges of indices names: `loading.wall[2-5].gap` names the gaps of four walls. A path
+/// without a range names itself.
+/// @return the path itself where a range is none: not two indices in rising order, or of more than 1000 entries in all
+[[nodiscard]] std::vector<std::string> plain_paths(std::string_view path);
+
+}  // namespace monograin
