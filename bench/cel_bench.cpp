@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "cel/contact_law.hpp"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -35,7 +34,7 @@ class PathParser {
       if (key.empty()) return std::nullopt;
       path.emplace_back(std::string(key));
       while (take('[')) {
-        const std::optional<std::size_t> index = take_index();
+        const std::optional<std::size_t> index = take_index(text_);
         if (!index || !take(']')) return std::nullopt;
         path.emplace_back(*index);
       }
@@ -57,14 +56,6 @@ class PathParser {
     const std::string_view key = text_.substr(0, static_cast<std::size_t>(end - text_.begin()));
     text_.remove_prefix(key.size());
     return key;
-  }
-
-  std::optional<std::size_t> take_index() {
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), index);
-    if (error != std::errc{}) return std::nullopt;
-    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-    return index;
   }
 
   std::string_view text_;

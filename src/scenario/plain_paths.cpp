@@ -1,8 +1,7 @@
 #include "scenario/plain_paths.hpp"
 
+#include <algorithm>
 #include <charconv>
-#include <cstddef>
-#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -10,15 +9,6 @@ namespace monograin {
 namespace {
 
 constexpr std::size_t k_most_paths = 1000;
-
-/// An index at the begin of a text, which is then removed.
-std::optional<std::size_t> take_index(std::string_view& text) {
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-  if (error != std::errc{}) return std::nullopt;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return index;
-}
 
 /// First and last index of a range: the text between two brackets.
 std::optional<std::pair<std::size_t, std::size_t>> range_in(std::string_view text) {
@@ -32,23 +22,37 @@ std::optional<std::pair<std::size_t, std::size_t>> range_in(std::string_view tex
 
 }  // namespace
 
+std::optional<std::size_t> take_index(std::string_view& text) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc{}) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return index;
+}
+
 std::vector<std::string> plain_paths(std::string_view path) {
-  const std::vector<std::string> itself{std::string(path)};
-  for (std::size_t open = path.find('['); open != std::string_view::npos; open = path.find('[', open + 1)) {
-    const std::size_t close = path.find(']', open);
-    if (close == std::string_view::npos) break;
-    const auto range = range_in(path.substr(open + 1, close - open - 1));
-    if (!range) continue;
-    std::vector<std::string> paths;
-    const std::vector<std::string> ends = plain_paths(path.substr(close));
-    for (std::size_t index = range->first; index <= range->second; ++index) {
-      for (const std::string& end : ends) {
-        paths.push_back(std::string(path.substr(0, open + 1)).append(std::to_string(index)).append(end));
+  std::vector<std::string> paths{std::string()};
+  for (std::string_view rest = path; !rest.empty();) {
+    const std::size_t open = rest.find('[');
+    const std::size_t close = std::min(open == rest.npos ? rest.size() : rest.find(']', open), rest.size());
+    const auto range = close < rest.size() ? range_in(rest.substr(open + 1, close - open - 1)) : std::nullopt;
+    const auto [first, last] = range.value_or(std::pair<std::size_t, std::size_t>(0, 0));
+    if (paths.size() * (last - first + 1) > k_most_paths) return {std::string(path)};
+    std::vector<std::string> longer;
+    for (const std::string& before : paths) {
+      for (std::size_t index = first; index <= last; ++index) {
+        longer.push_back(before + std::string(rest.substr(0, range ? open + 1 : close)));
+        if (range) longer.back() += std::to_string(index);
       }
     }
-    return paths.size() <= k_most_paths ? paths : itself;
+    paths = std::move(longer);
+    rest.remove_prefix(close);
+    if (rest.starts_with(']')) {
+      for (std::string& before : paths) before += ']';
+      rest.remove_prefix(1);
+    }
   }
-  return itself;
+  return paths;
 }
 
 }  // namespace monograin

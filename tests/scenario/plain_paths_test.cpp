@@ -25,7 +25,7 @@ TEST(PlainPaths, CombineRanges) {
 
 TEST(PlainPaths, LeaveWhatIsNoRange) {
   for (const char* path : {"a[2-2]", "a[3-2]", "a[-2]", "a[2-]", "a[2-3", "a[2-3-4]", "a[x-y]", "a[0-1000]",
-                           "a[0-99].b[0-99]", "a[0-99999999999999999999]"}) {
+                           "a[0-99].b[0-99]", "a[0-1].b[0-99].c[0-99]", "a[0-99999999999999999999]"}) {
     EXPECT_EQ(plain_paths(path), Paths{path});
   }
 }

@@ -293,8 +293,10 @@ TEST_F(CalibrationTest, TheStartOfADrivenWallMovesWithTheRadius) {
   EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 7.3e-3, 1.0, 1e-6);
 }
 
-TEST_F(CalibrationTest, FindsTheGapOfAFixedWallThatAGrowingParticleMeets) {
-  const std::string scenario = R"(model = "mdr"
+/// A plastic particle that two walls press until it meets fixed ones, all at one gap.
+/// @param fixed  names and normals
+std::string pressed_between(const std::vector<std::pair<std::string, std::string>>& fixed) {
+  std::string text = R"(model = "mdr"
 [particle]
 radius = "10 mm"
 [material]
@@ -304,57 +306,40 @@ yield_stress = "40 MPa"
 [loading]
 configuration = "walls"
 steps = [{ displacement = "0.4 R0", duration = "1 s" }]
-[[loading.wall]]
-name = "top"
-normal = [0, 0, 1]
-[[loading.wall]]
-name = "bottom"
-normal = [0, 0, -1]
-[[loading.wall]]
-name = "side"
-normal = [1, 0, 0]
-gap = "0.1 mm"
-fixed = true
 )";
-  write("s.toml", scenario);
-  write("c.toml", replaced(replaced(k_free_gap, "late.force[N]", "side.force[N]"),
-                           "loading.wall[1].gap\" = { from = 0, to = \"0.1 mm\", start = 0 }",
-                           "loading.wall[2].gap\" = { from = \"0.01 R0\", to = \"0.08 R0\" }"));
-  write("d.csv", csv_of(measure(scenario, {"loading.wall[2].gap=0.31 mm"}, "top.displacement", "side.force"),
-                        "top.displacement[m],side.force[N],w"));
+  const auto add = [&](const std::string& name, const std::string& normal, const char* rest) {
+    text += "[[loading.wall]]\nname = \"" + name + "\"\nnormal = " + normal + "\n" + rest;
+  };
+  add("top", "[0, 0, 1]", "");
+  add("bottom", "[0, 0, -1]", "");
+  for (const auto& [name, normal] : fixed) add(name, normal, "gap = \"0.1 mm\"\nfixed = true\n");
+  return text;
+}
+
+class CalibrationOfGaps : public CalibrationTest {
+ protected:
+  /// Writes a calibration that seeks a gap, and the data of a particle whose gap is 0.31 mm.
+  /// @param path  of the gap
+  void write_fit(const std::string& scenario, const std::string& path) const {
+    write("s.toml", scenario);
+    write("c.toml", replaced(replaced(k_free_gap, "late.force[N]", "side.force[N]"),
+                             "loading.wall[1].gap\" = { from = 0, to = \"0.1 mm\", start = 0 }",
+                             path + "\" = { from = \"0.01 R0\", to = \"0.08 R0\" }"));
+    write("d.csv", csv_of(measure(scenario, {path + "=0.31 mm"}, "top.displacement", "side.force"),
+                          "top.displacement[m],side.force[N],w"));
+  }
+};
+
+TEST_F(CalibrationOfGaps, FindsTheGapOfAFixedWallThatAGrowingParticleMeets) {
+  write_fit(pressed_between({{"side", "[1, 0, 0]"}}), "loading.wall[2].gap");
   EXPECT_NEAR(calibrate(read()).solution.parameters[0] / 3.1e-4, 1.0, 1e-6);
 }
 
 // A particle that is loose in its die: one clearance on all sides.
-TEST_F(CalibrationTest, FindsTheClearanceThatSeveralWallsShare) {
-  std::string scenario = R"(model = "mdr"
-[particle]
-radius = "10 mm"
-[material]
-youngs_modulus = "1 GPa"
-poisson_ratio = 0.3
-yield_stress = "40 MPa"
-[loading]
-configuration = "walls"
-steps = [{ displacement = "0.4 R0", duration = "1 s" }]
-[[loading.wall]]
-name = "top"
-normal = [0, 0, 1]
-[[loading.wall]]
-name = "bottom"
-normal = [0, 0, -1]
-)";
-  for (const auto& [name, normal] :
-       {std::pair("side", "[1, 0, 0]"), {"left", "[-1, 0, 0]"}, {"front", "[0, 1, 0]"}, {"back", "[0, -1, 0]"}}) {
-    scenario += std::string("[[loading.wall]]\nname = \"") + name + "\"\nnormal = " + normal +
-                "\ngap = \"0.1 mm\"\nfixed = true\n";
-  }
-  write("s.toml", scenario);
-  write("c.toml", replaced(replaced(k_free_gap, "late.force[N]", "side.force[N]"),
-                           "loading.wall[1].gap\" = { from = 0, to = \"0.1 mm\", start = 0 }",
-                           "loading.wall[2-5].gap\" = { from = \"0.01 R0\", to = \"0.08 R0\" }"));
-  write("d.csv", csv_of(measure(scenario, {"loading.wall[2-5].gap=0.31 mm"}, "top.displacement", "side.force"),
-                        "top.displacement[m],side.force[N],w"));
+TEST_F(CalibrationOfGaps, FindsTheClearanceThatSeveralWallsShare) {
+  write_fit(
+      pressed_between({{"side", "[1, 0, 0]"}, {"left", "[-1, 0, 0]"}, {"front", "[0, 1, 0]"}, {"back", "[0, -1, 0]"}}),
+      "loading.wall[2-5].gap");
   const Calibration calibration = read();
   const CalibrationResult result = calibrate(calibration);
   EXPECT_NEAR(result.solution.parameters[0] / 3.1e-4, 1.0, 1e-6);
