@@ -120,7 +120,7 @@ class IndependentContacts final : public HybridSystem {
     std::vector<double> at(contacts_.size());
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const bool is_by_force = ramps[i].control == Control::force;
-      const double stood = is_by_force ? contacts_[i].displacement_at(law_, y[slots_[i]]) : 0.0;
+      const double stood = is_by_force ? left_at(i, y) : 0.0;
       const WallDrive drive(ramps[i], is_by_force ? units_.force : units_.length);
       at[i] = contacts_[i].take_up(law_, drive, stood, classes_[i].takes_force, carried(i, y));
       // y takes the coordinates of this step even if the step cannot begin, so that the last row shows its start.
@@ -135,7 +135,7 @@ class IndependentContacts final : public HybridSystem {
     if (const auto end = find_mode(0.0, y, log, {})) throw CannotBegin(*end);
     has_begun_ = true;
     solve(0.0, y);
-    arm_guards(0.0);
+    arm_guards(0.0, y);
   }
 
   void complete(double xi, std::span<double> y) override {
@@ -227,11 +227,11 @@ class IndependentContacts final : public HybridSystem {
       std::optional<DomainEnd> end;
       if (guard.kind == k_made)
         c.make(law_, true, log);
-      else if (guard.kind == k_lost)
+      else if (guard.kind == k_lost && !(follows_centre(i) && centre_->bears_on(law_, contacts_, i, xi, y)))
         c.lose(law_, log, carried(i, y));
       else if (guard.kind == k_retreat)
         c.retreat(law_, displacement(i, xi, y), guard.name, log, carried(i, y));
-      else
+      else if (guard.kind == k_boundary)
         end = c.pass(law_, *c.next(law_), log);
       // The next boundary may lie within the round-off of the ramp, as in a very shallow dent: it is passed at once.
       const bool is_pressed_on = guard.kind == k_made || guard.kind == k_boundary;
@@ -240,7 +240,7 @@ class IndependentContacts final : public HybridSystem {
     }
     if (const auto end = find_mode(xi, y, log, fired)) return end;
     solve(xi, y);
-    arm_guards(xi);
+    arm_guards(xi, y);
     return std::nullopt;
   }
 
@@ -337,6 +337,12 @@ class IndependentContacts final : public HybridSystem {
     return centre_ ? centre_->displacement(law_, contacts_[i], i, d, y) : d;
   }
 
+  /// Displacement of a contact at the end of the last step.
+  [[nodiscard]] double left_at(std::size_t i, std::span<const double> y) const {
+    const double d = contacts_[i].displacement_at(law_, y[slots_[i]]);
+    return follows_centre(i) ? d + carried(i, y) : d;
+  }
+
   /// True for a contact whose displacement depends on where a free centre is.
   [[nodiscard]] bool follows_centre(std::size_t i) const noexcept {
     return centre_.has_value() && !contacts_[i].is_force_controlled();
@@ -388,11 +394,11 @@ class IndependentContacts final : public HybridSystem {
   }
 
   /// Lists the guards that may fire before the end of the step.
-  void arm_guards(double xi) {
+  void arm_guards(double xi, std::span<const double> y) {
     guards_.clear();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (follows_centre(i)) {
-        centre_->arm_guards(law_, contacts_[i], i, xi, guards_);
+        centre_->arm_guards(law_, contacts_[i], i, xi, y, guards_);
       } else if (!followers_.follows(i)) {
         arm_wall(law_, contacts_[i], i, guards_);
       }

@@ -277,6 +277,8 @@ class Drive {
       xi_ = advance.xi;
       rows_.write_before(last, xi_);
       follow([&](ForwardSensitivities&) { integrator_->dense_sensitivities(xi_); });
+      // An event this close to the end of the step is at the end: what is left of a ramp is round-off.
+      if (advance.hit_guard && 1.0 - xi_ <= k_same_instant) xi_ = 1.0;
       if (advance.hit_guard) return last;
       if (xi_ >= 1.0) return std::nullopt;
     }

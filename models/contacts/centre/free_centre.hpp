@@ -42,7 +42,7 @@ class CentreWalls {
   [[nodiscard]] virtual double overlap(std::size_t i) const = 0;
   /// Force of a contact at an overlap > 0.
   [[nodiscard]] virtual Force force(std::size_t i, double overlap) const = 0;
-  /// Overlap under a force > 0.
+  /// Overlap under a force > 0; that at the end of the contact's branch if the branch bears less.
   [[nodiscard]] virtual double overlap_under(std::size_t i, double force) const = 0;
 
  protected:

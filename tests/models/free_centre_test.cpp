@@ -1,0 +1,176 @@
+// A particle with a free centre, under every law that has one. Between a wall that moves and one at rest, its contacts
+// go through the same as under two walls that move half as far against a fixed centre; and a motion that all walls
+// share carries the particle along, and changes no contact.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenario/scenario.hpp"
+#include "support/test_run.hpp"
+
+namespace monograin {
+namespace {
+
+struct Particle {
+  std::string name;
+  std::string model;  ///< keys of the model and its material
+  double depth;       ///< overlap to which the walls press
+  bool has_direct_form = true;
+};
+void PrintTo(const Particle& particle, std::ostream* out) { *out << particle.name; }
+
+const std::vector<Particle> k_particles = {
+    {"hertz", "model = \"hertz\"\nmaterial = { youngs_modulus = 100, poisson_ratio = 0.3 }\n", 0.01},
+    {"mdr", "model = \"mdr\"\nmaterial = { youngs_modulus = 100, poisson_ratio = 0.3, yield_stress = 1 }\n", 0.05},
+    {"cel", "model = \"cel\"\nmaterial = { youngs_modulus = 100, poisson_ratio = 0.3, yield_stress = 1 }\n", 0.05,
+     false},
+    {"similarity",
+     "model = \"similarity\"\nsimilarity = { unloading = \"mdr\" }\n"
+     "material = { youngs_modulus = 100, poisson_ratio = 0.3, strength = 1, hardening_exponent = 0.5 }\n",
+     0.025},
+    {"nonlocal", "model = \"nonlocal\"\nmaterial = { youngs_modulus = 100, poisson_ratio = 0.3 }\n", 0.01},
+    {"compressible",
+     "model = \"compressible\"\n"
+     "material = { nu0 = 0.3, shear_ratio = 0.5, stiffness_ratio = 10, yield_pressure = 1 }\n",
+     0.05},
+};
+
+/// A step of both walls: a share of the depth, or of the force there.
+struct Share {
+  Step::Kind kind;
+  double value;
+};
+constexpr auto k_displacement = Step::Kind::displacement;
+constexpr auto k_force = Step::Kind::force;
+const std::vector<std::vector<Share>> k_programs = {
+    {{k_displacement, 1.0}, {k_force, 0.0}},
+    {{k_displacement, 1.0}, {k_force, 0.5}, {k_displacement, 1.2}},
+    {{k_displacement, 1.0}, {k_force, 0.0}, {k_displacement, 1.1}, {k_force, 0.0}},
+    {{k_force, 1.0}, {k_force, 0.0}},
+    {{k_force, 1.0}, {k_force, 0.2}, {k_force, 1.3}},
+};
+
+std::vector<Step> steps(const std::vector<Share>& program, double depth, double force) {
+  std::vector<Step> all;
+  for (const Share& share : program) {
+    all.push_back(share.kind == k_force ? force_ramp(share.value * force) : ramp(share.value * depth));
+  }
+  return all;
+}
+
+class FreeCentre : public testing::TestWithParam<Particle> {
+ protected:
+  [[nodiscard]] static TestRun run_in(std::vector<WallSpec> walls, const std::string& centre,
+                                      const std::string& integrator) {
+    const std::string text =
+        GetParam().model + "particle = { radius = 1 }\nloading = { configuration = \"walls\", centre = \"" + centre +
+        "\", steps = [{ displacement = 1, duration = 1 }], " + "wall = [{ name = \"a\", normal = [0, 0, 1] }] }\n";
+    CheckedScenario scenario = parse_scenario(text, "cell.toml");
+    scenario.loading.walls = std::move(walls);
+    return run(scenario, integrator, {.rtol = 1e-9, .atol = 1e-13}, false);
+  }
+  [[nodiscard]] static TestRun run_between(const std::vector<Step>& one, const std::vector<Step>& other,
+                                           const std::string& centre, const std::string& integrator) {
+    return run_in({wall("a", {0.6, 0.0, 0.8}, one), wall("b", {-0.6, 0.0, -0.8}, other)}, centre, integrator);
+  }
+  [[nodiscard]] static std::string tightest() { return GetParam().has_direct_form ? "direct" : "ida"; }
+  [[nodiscard]] static TestRun run_pair(const std::vector<Step>& of_each) {
+    return run_between(of_each, of_each, "fixed", tightest());
+  }
+  /// Runs one program for each wall of a cell while all walls share a motion.
+  /// @param motion  where it has led at the end of each step
+  [[nodiscard]] static TestRun run_moving(const std::vector<Eigen::Vector3d>& normals,
+                                          const std::vector<std::vector<Share>>& programs,
+                                          const std::vector<Eigen::Vector3d>& motion, double force) {
+    std::vector<WallSpec> walls;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      std::vector<Step> moved = steps(programs[i], GetParam().depth, force);
+      for (std::size_t k = 0; k < moved.size(); ++k) {
+        if (moved[k].kind == k_displacement) moved[k].target += normals[i].dot(motion[k]);
+      }
+      walls.push_back(wall(std::string(1, static_cast<char>('a' + i)), normals[i], moved));
+    }
+    return run_in(walls, "equilibrium", tightest());
+  }
+};
+
+TEST_P(FreeCentre, FollowsThePairOfWallsThatMoveByHalf) {
+  const double depth = GetParam().depth;
+  const double force = run_pair({ramp(depth)}).last("a.force");
+  for (const auto& program : k_programs) {
+    const TestRun pair = run_pair(steps(program, depth, force));
+    ASSERT_EQ(pair.record.status, RunStatus::complete) << pair.record.message;
+    for (const std::string integrator : k_integrators) {
+      if (integrator == "direct" && !GetParam().has_direct_form) continue;
+      const std::vector<Step> rest(program.size(), hold());
+      const TestRun free = run_between(steps(program, 2.0 * depth, force), rest, "equilibrium", integrator);
+      ASSERT_EQ(free.record.status, RunStatus::complete) << integrator << ": " << free.record.message;
+      EXPECT_LE(difference(free, pair), integrator == "direct" ? 1e-9 : 1e-6) << integrator;
+    }
+  }
+}
+
+const double k_root = std::sqrt(2.0) / 3.0;
+const std::vector<Eigen::Vector3d> k_tetrahedron = {{0.0, 0.0, 1.0},
+                                                    {2.0 * k_root, 0.0, -1.0 / 3.0},
+                                                    {-k_root, std::sqrt(3.0) * k_root, -1.0 / 3.0},
+                                                    {-k_root, -std::sqrt(3.0) * k_root, -1.0 / 3.0}};
+
+TEST_P(FreeCentre, IsCarriedAlongByAMotionOfAllWalls) {
+  const double depth = GetParam().depth;
+  const double force = run_pair({ramp(depth)}).last("a.force");
+  // In the cross, a wall without load lets the particle lie loose between two walls until it presses, too.
+  const std::vector<Eigen::Vector3d> cross = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+  const std::vector<std::vector<Share>> in_cross = {{{k_displacement, 0.9}, {k_displacement, 0.8}},
+                                                    {{k_displacement, 0.8}, {k_displacement, 0.8}},
+                                                    {{k_force, 0.0}, {k_displacement, 1.0}},
+                                                    {{k_displacement, 0.0}, {k_displacement, 0.0}}};
+  const std::vector<std::vector<Share>> in_tetrahedron = {{{k_displacement, 0.3}, {k_force, 0.5}},
+                                                          {{k_displacement, 0.8}, {k_displacement, 0.8}},
+                                                          {{k_displacement, 0.0}, {k_displacement, 0.0}},
+                                                          {{k_displacement, 0.0}, {k_displacement, 0.0}}};
+  const std::vector<Eigen::Vector3d> rest(2, Eigen::Vector3d::Zero());
+  const std::vector<Eigen::Vector3d> motion = {{-0.4 * depth, -1.9 * depth, 0.3 * depth},
+                                               {0.2 * depth, 1.5 * depth, 0.8 * depth}};
+  for (const auto& [normals, programs] : {std::pair{cross, in_cross}, std::pair{k_tetrahedron, in_tetrahedron}}) {
+    const TestRun still = run_moving(normals, programs, rest, force);
+    const TestRun moved = run_moving(normals, programs, motion, force);
+    ASSERT_EQ(still.record.status, RunStatus::complete) << still.record.message;
+    ASSERT_EQ(moved.record.status, RunStatus::complete) << moved.record.message;
+    for (const char* const name : {"a.force", "b.force", "c.force", "d.force"}) {
+      EXPECT_GT(still.last(name), 0.01 * force) << name;
+      EXPECT_NEAR(moved.last(name), still.last(name), 1e-6 * force) << name << " of " << normals.size();
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEveryLaw, FreeCentre, testing::ValuesIn(k_particles),
+                         [](const auto& tested) { return tested.param.name; });
+
+class LooseParticle : public FreeCentre {};
+
+TEST_P(LooseParticle, IsPressedOntoAllWallsInTheWayOfAForce) {
+  // Three walls leave different gaps; the force takes the particle across these, and they bear it in equal parts.
+  const double force = run_pair({ramp(GetParam().depth)}).last("a.force");
+  std::vector<WallSpec> walls = {wall("a", k_tetrahedron[0], {force_ramp(0.5 * force)})};
+  for (std::size_t i = 1; i < 4; ++i) {
+    const double gap = 0.3 * GetParam().depth * static_cast<double>(i);
+    walls.push_back(wall(std::string(1, static_cast<char>('a' + i)), k_tetrahedron[i], {}, gap));
+  }
+  const TestRun pressed = run_in(walls, "equilibrium", tightest());
+  ASSERT_EQ(pressed.record.status, RunStatus::complete) << pressed.record.message;
+  for (const char* const name : {"b.force", "c.force", "d.force"})
+    EXPECT_NEAR(pressed.last(name), 0.5 * force, 1e-9 * force) << name;
+}
+
+INSTANTIATE_TEST_SUITE_P(OfLawsWithoutCoupling, LooseParticle,
+                         testing::Values(k_particles[0], k_particles[3], k_particles[5]),
+                         [](const auto& tested) { return tested.param.name; });
+
+}  // namespace
+}  // namespace monograin
