@@ -110,6 +110,9 @@ TEST_F(BrokenHistory, IsFoundByTheRuleThatItBreaks) {
   const double radius = run_.scenario.radius;
   EXPECT_TRUE(breaks(check_run(with_number(run_, "axial.overlap", row_, std::nan(""))), "no-number"));
   EXPECT_TRUE(breaks(check_run(with_number(run_, "axial.force", row_, -1.0)), "tension"));
+  const auto steps = run_.record.history.column("step");
+  const auto start = static_cast<std::size_t>(std::ranges::find(steps, 2.0) - steps.begin());
+  EXPECT_TRUE(breaks(check_run(with_number(run_, "axial.overlap", start, 0.9 * radius)), "jump"));
   EXPECT_TRUE(breaks(check_run(with_number(run_, "dissipation", row_, 1.0)), "energy-balance"));
   const double work = run_.record.history.column("work")[row_];
   const auto generous = with_number(with_number(run_, "stored_energy", row_, 1e3), "dissipation", row_, work - 1e3);

@@ -47,6 +47,9 @@ constexpr double k_most_work_integrated = 20000.0;
 constexpr double k_little = 1e-3;
 // Largest gap at which a wall touches, over the depth to which a program presses: the accuracy of positions.
 constexpr double k_touch = 1e-9;
+// Change of an overlap, over the largest, that is no jump: the weak spring by which a model holds a free centre is set
+// to rest.
+constexpr double k_jump = 1e-6;
 // Largest resultant, over the forces, that laws leave of forces in balance. Walls whose alignment is worse than this do
 // not balance each other.
 constexpr double k_left_over = 1e-9;
@@ -141,6 +144,29 @@ void check_forces(const Run& run, Violations& found) {
       if (!(table.at(row, c) < -own_tolerance(run) * scale)) continue;
       found.push_back({"tension", fmt::format("{} = {:.6g} N of at most {:.6g} N at t = {:.9g} s",
                                               table.columns()[c].name, table.at(row, c), scale, table.at(row, 0))});
+      return;
+    }
+  }
+}
+
+/// Checks that a contact which bears keeps its overlap where a step ends and the next one begins.
+void check_step_starts(const Run& run, Violations& found) {
+  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_explicit) return;
+  const Table& table = run.record.history;
+  const double most = std::max(own_tolerance(run), k_jump) * largest_of_kind(table, "overlap");
+  const double least_force = k_little * largest_of_kind(table, "force");
+  const auto step = *table.find("step");
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (kind_of(table.columns()[c]) != "overlap") continue;
+    const std::string& name = table.columns()[c].name;
+    const auto force = *table.find(name.substr(0, name.rfind('.')) + ".force");
+    for (std::size_t row = 1; row < table.row_count(); ++row) {
+      if (table.at(row, step) == table.at(row - 1, step)) continue;
+      if (std::min(table.at(row, force), table.at(row - 1, force)) <= least_force) continue;
+      const double jump = table.at(row, c) - table.at(row - 1, c);
+      if (!(std::abs(jump) > most)) continue;
+      found.push_back({"jump", fmt::format("{} goes from {:.6g} to {:.6g} m at once, t = {:.9g} s", name,
+                                           table.at(row - 1, c), table.at(row, c), table.at(row, 0))});
       return;
     }
   }
@@ -452,6 +478,7 @@ std::vector<Violation> check_run(const Run& run) {
   check_end(run, found);
   check_numbers(run, checked, found);
   check_forces(run, found);
+  check_step_starts(run, found);
   check_hold(run, found);
   check_energy(run, found);
   check_events(run, found);
