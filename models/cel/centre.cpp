@@ -27,8 +27,26 @@ void Centre::choose_balance(std::span<const double> forces) {
   for (std::size_t line = 0; line < lines_.size(); ++line) shares_[line] = lines_.components(balance_, line);
 }
 
-Eigen::Vector3d Centre::net_force(const Eigen::Vector3d& x, std::span<const double> forces) const {
-  Eigen::Vector3d net = k_weak_spring * balance_.transpose() * stretch(x);
+void Centre::follow(double xi, std::span<const std::optional<double>> speeds) {
+  rest_ += (xi - since_) * velocity_;
+  since_ = xi;
+  // Least squares, by a spring at every wall.
+  const auto sum_along = [&](std::size_t line, auto&& value) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      if (speeds[i] && lines_.line_of(i) == line) sum += weights_[i] * value(i);
+    }
+    return sum;
+  };
+  const auto stiffness = [&](std::size_t line) {
+    return sum_along(line, [&](std::size_t i) { return lines_.along(i); });
+  };
+  const auto force = [&](std::size_t line) { return sum_along(line, [&](std::size_t i) { return *speeds[i]; }); };
+  velocity_ = lines_.step(lines_.stiffest_directions(stiffness), stiffness, force);
+}
+
+Eigen::Vector3d Centre::net_force(double xi, const Eigen::Vector3d& x, std::span<const double> forces) const {
+  Eigen::Vector3d net = k_weak_spring * balance_.transpose() * stretch(xi, x);
   for (std::size_t line = 0; line < lines_.size(); ++line) {
     double push = 0.0;
     for (std::size_t i = 0; i < weights_.size(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,8 @@
 namespace monograin::cel {
 
 /// A centre that is fixed, or free to move along some directions. The spring determines it where no contact is stiff.
+/// The rest position of the spring moves with the walls that press, so that the spring bears next to nothing if these
+/// carry the particle along.
 class Centre {
  public:
   /// Stiffness of the spring over E R0.
@@ -27,7 +30,9 @@ class Centre {
   void choose_balance(std::span<const double> forces);
   /// Net force on the centre, along the directions of the equations.
   /// @param x  displacement of the centre along its free directions
-  [[nodiscard]] Eigen::Vector3d net_force(const Eigen::Vector3d& x, std::span<const double> forces) const;
+  [[nodiscard]] Eigen::Vector3d net_force(double xi, const Eigen::Vector3d& x, std::span<const double> forces) const;
+  /// Rate of the net force while forces and centre rest.
+  [[nodiscard]] Eigen::Vector3d net_force_rate() const { return -k_weak_spring * balance_.transpose() * velocity_; }
   /// Derivatives of an equation by the force on one wall of a class, and by the centre.
   [[nodiscard]] double by_force(std::size_t equation, std::size_t i) const noexcept {
     return shares_[lines_.line_of(i)][equation] * weights_[i];
@@ -36,18 +41,30 @@ class Centre {
     return k_weak_spring * balance_.col(equation);
   }
 
-  /// Puts the rest position of the spring.
-  void rest_at(const Eigen::Vector3d& x) noexcept { rest_ = x; }
-  [[nodiscard]] Eigen::Vector3d stretch(const Eigen::Vector3d& x) const noexcept { return x - rest_; }
+  /// Puts the rest position of the spring at the beginning of a step; there it stays until follow().
+  void rest_at(const Eigen::Vector3d& x) noexcept {
+    rest_ = x;
+    velocity_.setZero();
+    since_ = 0.0;
+  }
+  /// Lets the rest position move on so that it keeps its distance from walls, as far as these agree.
+  /// @param speeds  one for each class: rate of the displacement of a wall that leads; none of others
+  void follow(double xi, std::span<const std::optional<double>> speeds);
+  [[nodiscard]] bool follows() const noexcept { return velocity_ != Eigen::Vector3d::Zero(); }
+  [[nodiscard]] Eigen::Vector3d stretch(double xi, const Eigen::Vector3d& x) const noexcept {
+    return x - rest_ - (xi - since_) * velocity_;
+  }
   /// Energy of the spring, which is no part of the law.
-  [[nodiscard]] double energy(const Eigen::Vector3d& x) const noexcept {
-    return 0.5 * k_weak_spring * stretch(x).squaredNorm();
+  [[nodiscard]] double energy(double xi, const Eigen::Vector3d& x) const noexcept {
+    return 0.5 * k_weak_spring * stretch(xi, x).squaredNorm();
   }
 
  private:
   contacts::CentreLines lines_;
   std::vector<double> weights_;  ///< push of all walls of a class along their line, per force of one wall
-  Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rest_ = Eigen::Vector3d::Zero();         ///< rest position of the spring at an instant
+  double since_ = 0.0;                                     ///< that instant
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();     ///< of the rest position
   Eigen::Matrix3d balance_ = Eigen::Matrix3d::Identity();  ///< directions of the equations
   std::vector<Eigen::Vector3d> shares_;                    ///< components of the lines' directions among these
 };

@@ -14,14 +14,15 @@ constexpr double k_pull = 20.0;
 constexpr double k_first_pull = 0.5;
 constexpr double k_nearest_flow = 1e-9;
 
-/// Speed of the walls, over the sum of that and the speed of their contacts: 0 at a fold. Where a force begins,
-/// contacts have no stiffness yet, which is no fold.
+/// Speed of the walls that touch, over the sum of that and the speed of their contacts: 0 at a fold. Where a force
+/// begins, contacts have no stiffness yet, which is no fold.
 double slowness(const Particle& p, std::span<const double> rates) noexcept {
   double speed = 0.0;
   double fastest = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const ClassState& c = p.classes[i];
-    if (c.takes_force() && c.touches && !(c.contact.F > 0.0)) return 1.0;
+    if (!c.touches) continue;
+    if (c.takes_force() && !(c.contact.F > 0.0)) return 1.0;
     const double u_rate = c.contact.u_by.coordinate * rates[i];
     speed = std::max(speed, std::abs(c.takes_force() ? u_rate : c.drive.rate()));
     fastest = std::max({fastest, std::abs(u_rate), std::abs(c.dent.h_zeta * rates[p.layout().dent(i)])});
@@ -38,6 +39,9 @@ double Motion::evaluate(Particle& p, double xi, std::span<const double> y) {
   const std::size_t size = p.layout().core();
   right_.setZero(size, 2);
   for (std::size_t i = 0; i < p.size(); ++i) right_(i, 0) = p.classes[i].drive.rate();
+  if (p.layout().directions > 0)
+    right_.col(0).segment(p.layout().centre(0), p.layout().directions) =
+        -p.centre.net_force_rate().head(p.layout().directions);
   p.residual(xi, {right_.col(1).data(), size});
   const double since = xi - flow_begin_;
   right_.col(1) *= -(since > 0.0 ? std::max(k_pull, k_first_pull / (since + k_nearest_flow)) : k_pull);

@@ -25,13 +25,18 @@ constexpr double k_stalled = 1e-14;
 }  // namespace
 
 /// Largest residual of the state that was evaluated, as a displacement. A yield function counts times the elastic
-/// displacement, because it has the relative accuracy of that.
+/// displacement, because it has the relative accuracy of that; a net force times the displacement over the
+/// force of a contact that bears the largest force.
 double Newton::error(const Particle& p, double xi) {
   const Layout& layout = p.layout();
   p.residual(xi, {residual_.data(), layout.core()});
+  double force = 0.0;
+  for (const ClassState& c : p.classes) force = std::max(force, c.contact.F);
+  const double softness = force > 0.0 ? std::max(1.0, 1.0 / std::cbrt(force)) : 1.0;
   double largest = 0.0;
   for (std::size_t j = 0; j < layout.core(); ++j) {
-    const double unit = layout.is_dent(j) ? std::min(1.0, p.classes[j - p.size()].contact.u) : 1.0;
+    double unit = j < p.size() ? 1.0 : softness;
+    if (layout.is_dent(j)) unit = std::min(1.0, p.classes[j - p.size()].contact.u);
     largest = std::max(largest, unit * std::abs(residual_(j, 0)));
   }
   return largest;
@@ -87,7 +92,7 @@ void Newton::solve(Particle& p, double xi, std::span<double> y) {
   }
   p.evaluate(y);
   const bool takes_force = std::ranges::any_of(p.classes, &ClassState::takes_force);
-  if (takes_force && p.centre.stretch(p.position()).cwiseAbs().maxCoeff() > k_farthest)
+  if (takes_force && p.centre.stretch(xi, p.position()).cwiseAbs().maxCoeff() > k_farthest)
     throw DomainError(Limit::centre_driven_away);
   if (!(now <= k_solved * std::max(largest, p.material().Y))) throw DomainError(Limit::applicability);
 }

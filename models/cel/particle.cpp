@@ -139,6 +139,17 @@ void Particle::choose_balance() {
   ++revision_;
 }
 
+void Particle::follow_walls(double xi) {
+  if (std::ranges::none_of(classes, &ClassState::takes_force)) return;
+  std::vector<std::optional<double>> speeds;
+  for (const ClassState& c : classes) {
+    const bool leads = c.touches && !is_idle(c) && !c.takes_force();
+    speeds.push_back(leads ? std::optional(c.drive.rate()) : std::nullopt);
+  }
+  centre.follow(xi, speeds);
+  ++revision_;
+}
+
 void Particle::residual(double xi, std::span<double> residual) const {
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes[i];
@@ -146,7 +157,7 @@ void Particle::residual(double xi, std::span<double> residual) const {
     residual[layout_.dent(i)] = c.flows ? -c.yield.f : 0.0;
   }
   if (layout_.directions == 0) return;
-  std::copy_n(centre.net_force(x_, forces_).begin(), layout_.directions, &residual[layout_.centre(0)]);
+  std::copy_n(centre.net_force(xi, x_, forces_).begin(), layout_.directions, &residual[layout_.centre(0)]);
 }
 
 double Particle::l_by_flow(std::size_t i) const noexcept { return 0.5 * classes[i].per_l * along_.row(i).dot(flow_); }

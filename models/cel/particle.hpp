@@ -116,6 +116,14 @@ class Particle {
   void evaluate(std::span<const double> y, bool with_yield = true);
   /// Chooses the equations (E) that suit the forces at the state that was evaluated.
   void choose_balance();
+  /// True for a wall that only carries a loose particle along: it bears no more than the weak spring does.
+  [[nodiscard]] bool is_idle(const ClassState& c) const noexcept {
+    constexpr double k_times = 10.0;
+    return c.contact.F < k_times * Centre::k_weak_spring * depth_;
+  }
+  /// Lets the spring of the centre follow the walls that press under a displacement, in the mode that begins, if the
+  /// program prescribes a force, too: that may vanish, and must then not be left with a spring that is stretched.
+  void follow_walls(double xi);
   /// Counts evaluations and choices of equations.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
   [[nodiscard]] const Coverage& coverage() const noexcept { return coverage_; }

@@ -147,10 +147,10 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
 }
 
 /// In elastic motion the work equals the stored energy, up to a constant.
-std::optional<double> System::closed_quadrature(double /*xi*/, std::span<const double> y) {
+std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
   if (particle_.any_flows()) return std::nullopt;
   particle_.evaluate(y);
-  return particle_.stored_energy() + particle_.centre.energy(particle_.position());
+  return particle_.stored_energy() + particle_.centre.energy(xi, particle_.position());
 }
 
 // --- program and mode
@@ -178,7 +178,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   particle_.forget();
   // Where a step is only cut in two, the program goes on in the same direction, and the spring rests where it did.
   const double turn = (direction_of(particle_) - before).abs().maxCoeff();
-  if (turn > k_same_direction) particle_.centre.rest_at(particle_.layout().centre_of(y));
+  if (turn > k_same_direction || particle_.centre.follows()) particle_.centre.rest_at(particle_.layout().centre_of(y));
   solve(0.0, y);
   decide_mode(particle_, motion_, 0.0, y, {}, log);
   // Walls that touch the fresh particle are in contact from the start, without an event.
@@ -188,6 +188,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     });
   }
   has_begun_ = true;
+  particle_.follow_walls(0.0);
   // Contacts that begin to flow may be slightly off their yield function: this puts them on it.
   solve(0.0, y);
   if (const auto end = arm_guards(0.0, y)) throw CannotBegin(*end);
@@ -228,6 +229,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   }
   solve(xi, y);
   decide_mode(particle_, motion_, xi, y, guards, log);
+  particle_.follow_walls(xi);
   const auto end = arm_guards(xi, y);
   if (end) log.push_back(end->event);
   return end;
@@ -289,12 +291,9 @@ std::vector<Diagnostic> System::warnings() const {
 
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
   if (motion_.evaluate(particle_, xi, y) < k_hard_margin) return Difficulty::near_applicability_limit;
-  // An idle wall, which only carries a loose particle along, bears no more than the weak spring does.
-  constexpr double k_times = 10.0;
-  const double least = k_times * Centre::k_weak_spring * particle_.depth();
   const bool may_be_loose = particle_.layout().directions > 0;
-  const auto is_idle = [&](const ClassState& c) { return c.touches && c.contact.F < least; };
-  if (may_be_loose && std::ranges::any_of(particle_.classes, is_idle)) return Difficulty::singular_balance;
+  const auto is_loose = [this](const ClassState& c) { return c.touches && particle_.is_idle(c); };
+  if (may_be_loose && std::ranges::any_of(particle_.classes, is_loose)) return Difficulty::singular_balance;
   return std::nullopt;
 }
 

@@ -165,11 +165,11 @@ TEST_P(LooseParticle, IsPressedOntoAllWallsInTheWayOfAForce) {
   const TestRun pressed = run_in(walls, "equilibrium", tightest());
   ASSERT_EQ(pressed.record.status, RunStatus::complete) << pressed.record.message;
   for (const char* const name : {"b.force", "c.force", "d.force"})
-    EXPECT_NEAR(pressed.last(name), 0.5 * force, 1e-9 * force) << name;
+    EXPECT_NEAR(pressed.last(name), 0.5 * force, 1e-7 * force) << name;
 }
 
-INSTANTIATE_TEST_SUITE_P(OfLawsWithoutCoupling, LooseParticle,
-                         testing::Values(k_particles[0], k_particles[3], k_particles[5]),
+INSTANTIATE_TEST_SUITE_P(OfLawsThatLetItMove, LooseParticle,
+                         testing::Values(k_particles[0], k_particles[2], k_particles[3], k_particles[5]),
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "cel/centre.hpp"
 
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -30,16 +31,35 @@ TEST(CelCentre, FeelsTheSumOfTheForcesAndItsSpring) {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t i = 0; i < classes.size(); ++i) sum += forces[i] * classes[i].normals[0];
   centre.rest_at({0.1, 0.2, 0.3});
-  EXPECT_NEAR(centre.net_force({0.1, 0.2, 0.3}, forces).norm(), sum.norm(), 1e-15);
-  const Vector3d stretched = centre.net_force({1.1, 0.2, 0.3}, {std::vector<double>(3)});
+  EXPECT_NEAR(centre.net_force(0.0, {0.1, 0.2, 0.3}, forces).norm(), sum.norm(), 1e-15);
+  const Vector3d stretched = centre.net_force(0.0, {1.1, 0.2, 0.3}, {std::vector<double>(3)});
   EXPECT_NEAR(stretched.norm(), Centre::k_weak_spring, 1e-24);
-  EXPECT_NEAR(centre.energy({1.1, 0.2, 0.3}), 0.5 * Centre::k_weak_spring, 1e-24);
+  EXPECT_NEAR(centre.energy(0.0, {1.1, 0.2, 0.3}), 0.5 * Centre::k_weak_spring, 1e-24);
   // Equations are linear in forces and centre.
   for (std::size_t k = 0; k < 3; ++k) {
     double net = centre.by_centre(k).dot(Vector3d(1, 0, 0));
     for (std::size_t i = 0; i < classes.size(); ++i) net += centre.by_force(k, i) * forces[i];
-    EXPECT_NEAR(net, centre.net_force({1.1, 0.2, 0.3}, forces)[k], 1e-15) << k;
+    EXPECT_NEAR(net, centre.net_force(0.0, {1.1, 0.2, 0.3}, forces)[k], 1e-15) << k;
   }
+}
+
+TEST(CelCentre, LetsItsSpringFollowTheWallsThatLead) {
+  Centre centre(walls({{0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {1, 0, 0}}), true);
+  const std::vector<double> none(4);
+  const Vector3d n = centre.lines().arm(0);
+  // A wall that comes in at 0.2 pushes the particle away along its normal; with a partner at rest, half as fast.
+  centre.follow(0.0, std::vector<std::optional<double>>{0.2, std::nullopt, std::nullopt, std::nullopt});
+  EXPECT_NEAR(centre.stretch(0.5, -0.1 * n).norm(), 0.0, 1e-16);
+  EXPECT_TRUE(centre.follows());
+  centre.follow(0.5, std::vector<std::optional<double>>{0.2, 0.0, std::nullopt, std::nullopt});
+  EXPECT_NEAR(centre.stretch(1.0, -0.15 * n).norm(), 0.0, 1e-16);
+  // The net force changes at the rate that it tells.
+  const Vector3d x(0.3, -0.2, 0.1);
+  const Vector3d change = centre.net_force(1.0, x, none) - centre.net_force(0.75, x, none);
+  EXPECT_NEAR((change - 0.25 * centre.net_force_rate()).norm(), 0.0, 1e-24);
+  centre.rest_at(x);
+  EXPECT_FALSE(centre.follows());
+  EXPECT_EQ(centre.stretch(1.0, x), Vector3d::Zero());
 }
 
 TEST(CelCentre, LeavesNoRoundOffOfLargeForcesAcrossTheirLine) {
@@ -47,7 +67,7 @@ TEST(CelCentre, LeavesNoRoundOffOfLargeForcesAcrossTheirLine) {
   Centre centre(walls({n, -n, {1, 0.2, 0}}), true);
   const std::vector<double> forces{0.7, 0.7, 0.0};
   centre.choose_balance(forces);
-  EXPECT_EQ(centre.net_force(Vector3d::Zero(), forces), Vector3d::Zero());
+  EXPECT_EQ(centre.net_force(0.0, Vector3d::Zero(), forces), Vector3d::Zero());
 }
 
 }  // namespace

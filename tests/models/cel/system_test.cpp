@@ -353,6 +353,25 @@ TEST(CelForceControl, LetsTheCentreGoToWallsWithoutForce) {
   }
 }
 
+TEST(CelForceControl, BeginsAndEndsAtZeroWhileTheOtherWallMoves) {
+  // Both contacts bear the prescribed force, wherever the other wall takes the particle meanwhile.
+  const std::vector<Vector3d> normals{{1, 0, 0}, {-1, 0, 0}};
+  CheckedScenario scenario = with_free_centre(cel_walls(100.0, 0.3, normals, {{0.0, 0.08}, {0.0, -0.12}, {0.0, 0.05}}));
+  scenario.loading.walls[0].steps = {force_ramp(4e-3), force_ramp(0.0), force_ramp(2e-3)};
+  const CheckedScenario at_rest = [&] {
+    CheckedScenario still = scenario;
+    still.loading.walls[1].steps = path({0.0, 0.0, 0.0});
+    return still;
+  }();
+  for (const char* integrator : {"auto", "ida", "gsl-rk8pd"}) {
+    const TestRun now = run_by(with_points(scenario, 6), integrator, relative(1e-9));
+    ASSERT_EQ(now.record.status, RunStatus::complete) << integrator << ": " << now.record.message;
+    const TestRun still = run_by(with_points(at_rest, 6), integrator, relative(1e-9));
+    for (const char* column : {"w0.force", "w1.force", "w0.overlap", "w1.overlap"})
+      EXPECT_LE(difference(now.outputs(column), still.outputs(column)), 1e-7) << integrator << ": " << column;
+  }
+}
+
 TEST(CelForceControl, StandsStillUnderNoForceAfterAnyStep) {
   // The second step ends without contact; no force then leaves the wall there.
   const TestRun now = run_by(
