@@ -11,8 +11,7 @@
 namespace monograin::cel {
 
 /// A centre that is fixed, or free to move along some directions. The spring determines it where no contact is stiff.
-/// The rest position of the spring moves with the walls that press, so that the spring bears next to nothing if these
-/// carry the particle along.
+/// Its rest position may follow the walls that press: it then bears next to nothing if these carry the particle along.
 class Centre {
  public:
   /// Stiffness of the spring over E R0.

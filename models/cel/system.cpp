@@ -20,6 +20,8 @@ constexpr double k_hard_margin = 1e-3;
 /// Fitted range of the law.
 constexpr double k_least_modulus_over_yield = 6.25;
 constexpr double k_deepest = 0.5;
+/// Stored energy, over the work, below which it is negative by more than round-off.
+constexpr double k_least_stored = -1e-6;
 
 /// Particle of a scene, with lengths over R0 and stresses over E.
 Particle particle_of(const ModelInput& input, std::span<const ContactClass> classes, const Reach& reach) {
@@ -91,7 +93,7 @@ void System::start(std::span<double> y) {
   }
   particle_.forget();
   has_begun_ = false;
-  deepest_ = 0.0;
+  deepest_ = least_stored_ = 0.0;
 }
 
 // --- the forms of the equations
@@ -257,6 +259,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   if (has_energies()) {
     const double energy_unit = force_unit_ * length_;
     energies = {y[work_place_] * energy_unit, particle_.stored_energy() * energy_unit};
+    if (y[work_place_] > 0.0) least_stored_ = std::min(least_stored_, particle_.stored_energy() / y[work_place_]);
   }
   const auto shown = [&](std::size_t i) {
     const contacts::VisibleContact contact = visible(i, xi);
@@ -286,6 +289,12 @@ std::vector<Diagnostic> System::warnings() const {
     found.push_back({"E/Y is below 6.25, the softest material that the law is fitted to", "E/Y", modulus_over_yield_});
   if (deepest_ > k_deepest)
     found.push_back({"a wall goes beyond half the radius, where the law is not fitted", "overlap/R0", deepest_});
+  if (least_stored_ < k_least_stored) {
+    found.push_back(
+        {"the stored energy is negative: wide contacts of neighbouring walls that nothing balances act on each other "
+         "more than on themselves, for which the law is not made",
+         "least stored energy/work", least_stored_});
+  }
   return found;
 }
 

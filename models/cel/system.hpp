@@ -73,6 +73,7 @@ class System final : public HybridSystem {
 
   bool has_begun_ = false;
   double deepest_ = 0.0;               ///< largest overlap in a row so far, over R0
+  double least_stored_ = 0.0;          ///< least stored energy in a row so far, over the work; 0 if none is negative
   std::vector<double> last_;           ///< last state found by solve()
   std::vector<double> trial_, state_;  ///< work space
 };

@@ -435,6 +435,24 @@ TEST(CelWarning, NamesWhatTheLawIsNotFittedTo) {
   EXPECT_TRUE(warnings(6.25, 0.5).empty());
 }
 
+TEST(CelWarning, SaysWhereTheStoredEnergyIsNegative) {
+  // Two walls 60 degrees apart press a particle whose centre is fixed: no other wall balances them. Six such walls do.
+  const std::vector<Vector3d> all = [] {
+    std::vector<Vector3d> around;
+    for (int k = 0; k < 6; ++k)
+      around.emplace_back(std::cos(k * std::numbers::pi / 3.0), std::sin(k * std::numbers::pi / 3.0), 0.0);
+    return around;
+  }();
+  const auto warnings = [&](std::size_t count, double end) {
+    const std::vector<Vector3d> normals(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+    return run_by(cel_walls(25.0, 0.3, normals, {std::vector<double>(count, end)}), "auto").record.warnings;
+  };
+  EXPECT_TRUE(warnings(2, 0.15).empty());
+  EXPECT_TRUE(warnings(6, 0.3).empty());
+  ASSERT_EQ(warnings(2, 0.3).size(), 1u);
+  EXPECT_TRUE(contains(warnings(2, 0.3)[0], "the stored energy is negative")) << warnings(2, 0.3)[0];
+}
+
 // --- settings of a scenario
 
 std::string text_with(const std::string& poisson_ratio, const std::string& second_normal) {

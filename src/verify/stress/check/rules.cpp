@@ -153,7 +153,8 @@ void check_forces(const Run& run, Violations& found) {
 void check_step_starts(const Run& run, Violations& found) {
   if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_explicit) return;
   const Table& table = run.record.history;
-  const double most = std::max(own_tolerance(run), k_jump) * largest_of_kind(table, "overlap");
+  const double most =
+      std::max(own_tolerance(run), k_jump) * largest_of_kind(table, "overlap") + k_touch * run.scenario.radius;
   const double least_force = k_little * largest_of_kind(table, "force");
   const auto step = *table.find("step");
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
