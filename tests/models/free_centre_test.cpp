@@ -152,6 +152,29 @@ TEST_P(FreeCentre, IsCarriedAlongByAMotionOfAllWalls) {
 INSTANTIATE_TEST_SUITE_P(OfEveryLaw, FreeCentre, testing::ValuesIn(k_particles),
                          [](const auto& tested) { return tested.param.name; });
 
+class FreeCentreOfIndependentContacts : public FreeCentre {};
+
+TEST_P(FreeCentreOfIndependentContacts, DoesTheSameWorkByEveryFormAfterAWallHasLetGo) {
+  // Wall c, beside a, presses less and less; its force goes on falling where it has let go.
+  const double depth = GetParam().depth;
+  const double force = run_pair({ramp(depth)}).last("a.force");
+  const std::vector<WallSpec> walls = {
+      wall("a", {1, 0, 0}, path({depth, 0.8 * depth})), wall("b", {-1, 0, 0}, path({depth, 0.9 * depth})),
+      wall("c", {0.8, 0.6, 0}, {force_ramp(0.1 * force), force_ramp(-0.2 * force)}), wall("d", {0, -1, 0})};
+  const TestRun direct = run_in(walls, "equilibrium", "direct");
+  ASSERT_EQ(direct.record.status, RunStatus::complete) << direct.record.message;
+  ASSERT_EQ(direct.last("c.force"), 0.0);
+  for (const char* integrator : {"cvode-adams", "cvode-bdf", "ida"}) {
+    const TestRun now = run_in(walls, "equilibrium", integrator);
+    ASSERT_EQ(now.record.status, RunStatus::complete) << integrator << ": " << now.record.message;
+    EXPECT_LE(difference(now.outputs("work"), direct.outputs("work")), 1e-6) << integrator;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEveryLaw, FreeCentreOfIndependentContacts,
+                         testing::Values(k_particles[0], k_particles[3], k_particles[5]),
+                         [](const auto& tested) { return tested.param.name; });
+
 class LooseParticle : public FreeCentre {};
 
 TEST_P(LooseParticle, IsPressedOntoAllWallsInTheWayOfAForce) {

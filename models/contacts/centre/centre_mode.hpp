@@ -85,7 +85,10 @@ class CentreMode {
   /// Velocity of the centre.
   [[nodiscard]] Vector velocity(const Law& law, std::span<const Contact> contacts, double xi,
                                 std::span<const double> y) {
-    for (std::size_t i = 0; i < contacts.size(); ++i) rates_[i] = contacts[i].drive().rate();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Contact& c = contacts[i];
+      rates_[i] = c.touches() || !c.is_force_controlled() ? c.drive().rate() : 0.0;
+    }
     return centre_.velocity(Instant(law, contacts, xi), roles_, rates_, position(y));
   }
 
@@ -188,11 +191,11 @@ class CentreMode {
   class Instant final : public CentreWalls {
    public:
     Instant(const Law& law, std::span<const Contact> contacts, double xi) : law_(law), contacts_(contacts), xi_(xi) {}
-    /// Beyond the end of the step a force stays what it is there: a ramp down to zero would go on to a pull.
+    /// A wall does not pull: where a mode is decided ahead, a falling force may already be below zero.
     [[nodiscard]] std::optional<double> prescribed_force(std::size_t i) const override {
       const Contact& c = contacts_[i];
       if (!c.is_force_controlled()) return std::nullopt;
-      return c.touches() ? c.drive().value(std::min(xi_, 1.0)) : 0.0;
+      return c.touches() ? std::max(0.0, c.drive().value(xi_)) : 0.0;
     }
     [[nodiscard]] double overlap(std::size_t i) const override {
       return contacts_[i].drive().value(xi_) - law_.opening(contacts_[i].branch());
