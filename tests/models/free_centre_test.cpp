@@ -191,6 +191,17 @@ TEST_P(LooseParticle, IsPressedOntoAllWallsInTheWayOfAForce) {
     EXPECT_NEAR(pressed.last(name), 0.5 * force, 1e-7 * force) << name;
 }
 
+TEST_P(LooseParticle, IsPressedIntoADentThatItHasLeft) {
+  // Wall b retreats, so that the particle stays with a, whose force then takes it back to b, which comes in again.
+  const double depth = GetParam().depth;
+  const double force = run_pair({ramp(depth)}).last("a.force");
+  const std::vector<Step> of_a = {force_ramp(force), ramp(2.36 * depth), force_ramp(0.25 * force)};
+  const TestRun pressed =
+      run_between(of_a, path({1.9 * depth, -1.56 * depth, 0.53 * depth}), "equilibrium", tightest());
+  ASSERT_EQ(pressed.record.status, RunStatus::complete) << pressed.record.message;
+  EXPECT_NEAR(pressed.last("b.force"), 0.25 * force, 1e-7 * force);
+}
+
 INSTANTIATE_TEST_SUITE_P(OfLawsThatLetItMove, LooseParticle,
                          testing::Values(k_particles[0], k_particles[2], k_particles[3], k_particles[5]),
                          [](const auto& tested) { return tested.param.name; });

@@ -146,13 +146,19 @@ double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role>
 }
 
 /// Gives contacts that bear less than a force the stiffness that they have under it: at first touch they have none.
+/// Contacts beyond the end of their branch, where their force may be constant, get what they bear over their overlap.
 void FreeCentre::lend_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force) {
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0) || forces_[i] >= force) continue;
+    if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0)) continue;
+    double& stiffness = loads_[lines_.line_of(i)].stiffness;
     const double along = lines_.along(i);
-    const double now = walls.force(i, overlaps_[i]).slope;
-    const double under = walls.force(i, walls.overlap_under(i, force)).slope;
-    loads_[lines_.line_of(i)].stiffness += counts_[i] * std::max(0.0, under - now) * along * along;
+    if (forces_[i] < force) {
+      const double now = walls.force(i, overlaps_[i]).slope;
+      const double under = walls.force(i, walls.overlap_under(i, force)).slope;
+      stiffness += counts_[i] * std::max(0.0, under - now) * along * along;
+    } else if (stiffness == 0.0) {
+      stiffness += counts_[i] * forces_[i] / overlaps_[i] * along * along;
+    }
   }
 }
 
