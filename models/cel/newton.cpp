@@ -30,16 +30,18 @@ constexpr double k_stalled = 1e-14;
 double Newton::error(const Particle& p, double xi) {
   const Layout& layout = p.layout();
   p.residual(xi, {residual_.data(), layout.core()});
-  double force = 0.0;
-  for (const ClassState& c : p.classes) force = std::max(force, c.contact.F);
-  const double softness = force > 0.0 ? std::max(1.0, 1.0 / std::cbrt(force)) : 1.0;
   double largest = 0.0;
-  for (std::size_t j = 0; j < layout.core(); ++j) {
-    double unit = j < p.size() ? 1.0 : softness;
-    if (layout.is_dent(j)) unit = std::min(1.0, p.classes[j - p.size()].contact.u);
-    largest = std::max(largest, unit * std::abs(residual_(j, 0)));
+  double force = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Contact& contact = p.classes[i].contact;
+    force = std::max(force, contact.F);
+    largest = std::max(
+        {largest, std::abs(residual_(i, 0)), std::min(1.0, contact.u) * std::abs(residual_(layout.dent(i), 0))});
   }
-  return largest;
+  if (layout.directions == 0) return largest;
+  const double softness = force > 0.0 ? std::max(1.0, 1.0 / std::cbrt(force)) : 1.0;
+  return std::max(largest,
+                  softness * residual_.col(0).segment(layout.centre(0), layout.directions).cwiseAbs().maxCoeff());
 }
 
 /// Corrects a state by a Newton step, halved until the error is less than a bound.

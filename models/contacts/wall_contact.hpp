@@ -57,6 +57,11 @@ class WallContact {
 
   // --- at an instant
 
+  /// Force of a wall under force control. Where a mode is decided ahead, a falling force may already be below zero, and
+  /// a wall does not pull.
+  [[nodiscard]] double prescribed_force(double xi) const noexcept {
+    return touches_ ? std::max(0.0, drive_.value(xi)) : 0.0;
+  }
   /// Displacement under a prescribed force. An open wall stays; without load a contact is where it opens.
   /// @param near  displacement with which a law that iterates begins; 0: none is known
   [[nodiscard]] double displacement_under(const Law& law, double force, double near = 0.0) const {

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include "engine/integrator.hpp"
 
 namespace monograin {
 namespace {
@@ -180,7 +183,8 @@ double TestRun::at_event(std::string_view name, std::string_view column) const {
 TestRun run(const CheckedScenario& scenario, std::string_view integrator, const Tolerances& tolerances,
             bool merges_walls) {
   TestRun result{make_scene(scenario, merges_walls), {}};
-  result.record = record_run(result.scene, integrator, tolerances, scenario.output);
+  const std::string used = choose_integrator(std::string(integrator), *result.scene.system).used;
+  result.record = record_run(result.scene, used, tolerances, scenario.output);
   return result;
 }
 

@@ -72,6 +72,7 @@ struct TestRun {
   [[nodiscard]] double at_event(std::string_view name, std::string_view column) const;
 };
 
+/// @param integrator  as a scenario file names it, "auto" included
 [[nodiscard]] TestRun run(const CheckedScenario& scenario, std::string_view integrator = "direct",
                           const Tolerances& tolerances = {}, bool merges_walls = true);
 /// Tolerances with atol far below rtol, so that only rtol has an effect.

@@ -63,11 +63,10 @@ class CentreMode {
   void write_rates(const Law& law, std::span<const Contact> contacts, double xi, std::span<const double> y,
                    std::span<double> dy) {
     const Vector now = position(y);
-    const double later = std::min(xi + ahead_, 1.0);
-    const Vector then = centre_.equilibrium(Instant(law, contacts, later), roles_, rest_, now);
+    const Vector then = centre_.equilibrium(Instant(law, contacts, xi + ahead_), roles_, rest_, now);
     for (std::size_t k = 0; k < dimension(); ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
-      dy[slot_ + k] = later > xi ? (then[axis] - now[axis]) / (later - xi) : 0.0;
+      dy[slot_ + k] = (then[axis] - now[axis]) / ahead_;
     }
   }
   /// Rate of the work of one wall.
@@ -76,7 +75,7 @@ class CentreMode {
   [[nodiscard]] double power(const Law& law, const Contact& c, std::size_t i, double xi, std::span<const double> y,
                              const typename Contact::Slope& now, const Vector& velocity) const {
     if (c.is_force_controlled()) {
-      const double force = c.touches() ? std::max(0.0, c.drive().value(xi)) : 0.0;
+      const double force = c.prescribed_force(xi);
       return force > 0.0 ? c.power(law, xi, now) - force * centre_.along(i, velocity) : 0.0;
     }
     const double d = displacement(law, c, i, c.drive().value(xi), y);
@@ -191,11 +190,9 @@ class CentreMode {
   class Instant final : public CentreWalls {
    public:
     Instant(const Law& law, std::span<const Contact> contacts, double xi) : law_(law), contacts_(contacts), xi_(xi) {}
-    /// A wall does not pull: where a mode is decided ahead, a falling force may already be below zero.
     [[nodiscard]] std::optional<double> prescribed_force(std::size_t i) const override {
       const Contact& c = contacts_[i];
-      if (!c.is_force_controlled()) return std::nullopt;
-      return c.touches() ? std::max(0.0, c.drive().value(xi_)) : 0.0;
+      return c.is_force_controlled() ? std::optional(c.prescribed_force(xi_)) : std::nullopt;
     }
     [[nodiscard]] double overlap(std::size_t i) const override {
       return contacts_[i].drive().value(xi_) - law_.opening(contacts_[i].branch());

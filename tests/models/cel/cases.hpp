@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "engine/integrator.hpp"
 #include "history/run.hpp"
 #include "history/table.hpp"
 #include "support/test_run.hpp"
@@ -45,15 +44,6 @@ inline CheckedScenario cel_walls(double modulus_over_yield, double poisson_ratio
     walls.push_back(wall("w" + std::to_string(i), normals[i], path(displacements)));
   }
   return between(cel_scenario(Configuration::walls, modulus_over_yield, poisson_ratio, {}), std::move(walls));
-}
-
-/// A run by an integrator as a scenario file names it, including "auto".
-inline TestRun run_by(const CheckedScenario& scenario, const std::string& integrator, const Tolerances& tolerances = {},
-                      bool merges_walls = true) {
-  TestRun result{make_scene(scenario, merges_walls), {}};
-  const std::string used = choose_integrator(integrator, *result.scene.system).used;
-  result.record = record_run(result.scene, used, tolerances, scenario.output);
-  return result;
 }
 
 /// Begin or end of a dent's growth.

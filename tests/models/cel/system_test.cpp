@@ -49,7 +49,7 @@ class CelReference : public ::testing::TestWithParam<ReferenceCase> {
 
   void expect_met(const char* integrator, double rtol, const Bounds& bounds, bool merges_walls = true) const {
     SCOPED_TRACE(integrator);
-    const TestRun now = run_by(curve.scenario, integrator, relative(rtol), merges_walls);
+    const TestRun now = run(curve.scenario, integrator, relative(rtol), merges_walls);
     ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
     const CurveError error = error_of(now, curve);
     EXPECT_LE(error.force, bounds.curve);
@@ -104,7 +104,7 @@ TEST(CelSystem, IsHertzsUnderSmallLoadsButForTheElasticSphere) {
   const double g = nonlocal::sphere_self_influence(nu, 0.2, 4000) + nonlocal::sphere_influence(nu, std::numbers::pi);
   const double Es = composite_modulus(1.0, nu);
   for (const double d : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4}) {
-    const TestRun now = run_by(with_points(cel_scenario(Configuration::simple, 6.25, nu, {ramp(d)}), 1), "auto");
+    const TestRun now = run(with_points(cel_scenario(Configuration::simple, 6.25, nu, {ramp(d)}), 1), "auto");
     const double F = now.last("axial.force");
     const double excess = F / hertz_force(Es, 1.0, d) - 1.0;
     const double leading = 1.5 * g * F / d;
@@ -124,8 +124,8 @@ TEST_P(CelCycle, RetracesItsUnloadingAndRejoinsTheFirstLoading) {
   const auto scenario = [](std::vector<Step> steps) {
     return with_points(cel_scenario(GetParam(), 25.0, 0.3, std::move(steps)), 20);
   };
-  const TestRun cycle = run_by(scenario(path({0.12, 0.105, 0.12, 0.16})), "auto", relative(1e-11));
-  const TestRun straight = run_by(scenario(path({0.12, 0.16})), "auto", relative(1e-11));
+  const TestRun cycle = run(scenario(path({0.12, 0.105, 0.12, 0.16})), "auto", relative(1e-11));
+  const TestRun straight = run(scenario(path({0.12, 0.16})), "auto", relative(1e-11));
   for (const auto& [name, unit] : {std::pair("axial.force", 1.0), std::pair("lateral.force", 1.0),
                                    std::pair("axial.contact_radius", 1.0), std::pair("stored_energy", 1.0)}) {
     if (!cycle.record.history.find(name)) continue;
@@ -169,7 +169,7 @@ std::vector<CheckedScenario> eventful_scenarios() {
 TEST(CelSystem, NeverForgetsFlowOrGivesBackWhatItDissipates) {
   for (const CheckedScenario& scenario : eventful_scenarios()) {
     SCOPED_TRACE(describe(scenario));
-    const TestRun now = run_by(scenario, "auto", relative(1e-10));
+    const TestRun now = run(scenario, "auto", relative(1e-10));
     ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
     // Where some contacts flow for the first time and others do not yet, the law itself returns some work: with three
     // walls 1.8e-8 of the last work, also in the independent computation.
@@ -185,7 +185,7 @@ TEST(CelSystem, NeverForgetsFlowOrGivesBackWhatItDissipates) {
 TEST(CelSystem, KeepsTheForcesOnAFreeCentreInBalance) {
   for (const CheckedScenario& scenario : eventful_scenarios()) {
     if (!scenario.loading.centre_is_free) continue;
-    const TestRun now = run_by(scenario, "auto");
+    const TestRun now = run(scenario, "auto");
     Vector3d largest_sum = Vector3d::Zero();
     double most = 0.0;
     const std::size_t rows = now.record.history.row_count();
@@ -212,7 +212,7 @@ TEST(CelSystem, HasNoTimeOfItsOwn) {
     };
     stretch(slow.loading.steps);
     for (WallSpec& w : slow.loading.walls) stretch(w.steps);
-    EXPECT_EQ(difference(run_by(slow, "auto"), run_by(scenario, "auto")), 0.0) << describe(scenario);
+    EXPECT_EQ(difference(run(slow, "auto"), run(scenario, "auto")), 0.0) << describe(scenario);
   }
 }
 
@@ -221,17 +221,17 @@ TEST(CelSystem, RunsAlikeInAnyOrderAndOrientationOfItsWalls) {
   for (const CheckedScenario& scenario : eventful_scenarios()) {
     if (scenario.loading.walls.empty()) continue;
     SCOPED_TRACE(describe(scenario));
-    const TestRun expected = run_by(scenario, "auto", relative(1e-10));
+    const TestRun expected = run(scenario, "auto", relative(1e-10));
     CheckedScenario turned = scenario;
     for (WallSpec& w : turned.loading.walls) {
       const Vector3d normal = turn * Vector3d(w.normal[0], w.normal[1], w.normal[2]);
       w.normal = {normal.x(), normal.y(), normal.z()};
     }
     // The regularisation of the balance allows 1e-9.
-    EXPECT_LE(difference(run_by(turned, "auto", relative(1e-10)), expected), 5e-9);
+    EXPECT_LE(difference(run(turned, "auto", relative(1e-10)), expected), 5e-9);
     CheckedScenario reversed = scenario;
     std::ranges::reverse(reversed.loading.walls);
-    const TestRun other = run_by(reversed, "auto", relative(1e-10));
+    const TestRun other = run(reversed, "auto", relative(1e-10));
     for (std::size_t i = 0; i < scenario.loading.walls.size(); ++i) {
       const std::string a = class_of(expected, i);
       const std::string b = class_of(other, i);
@@ -246,8 +246,8 @@ TEST(CelSystem, DoesNotFeelAWallThatNeverTouches) {
     CheckedScenario with_one_more = scenario;
     const bool is_flat = scenario.loading.walls.size() == 3;
     with_one_more.loading.walls.push_back(wall("far", is_flat ? Vector3d(0, 0, 1) : Vector3d(-1, -1, -1), {}, 0.8));
-    const TestRun expected = run_by(scenario, "auto", relative(1e-10));
-    const TestRun now = run_by(with_one_more, "auto", relative(1e-10));
+    const TestRun expected = run(scenario, "auto", relative(1e-10));
+    const TestRun now = run(with_one_more, "auto", relative(1e-10));
     EXPECT_EQ(largest(now.column("far.force")), 0.0);
     for (std::size_t i = 0; i < scenario.loading.walls.size(); ++i) {
       const std::string name = class_of(expected, i);
@@ -259,10 +259,10 @@ TEST(CelSystem, DoesNotFeelAWallThatNeverTouches) {
 TEST(CelSystem, SharesTheTravelOfOneWallBetweenTwo) {
   // A punch on a particle that lies on an anvil has the effect of two walls with half its displacement.
   const std::vector<Vector3d> axial{{0, 0, 1}, {0, 0, -1}};
-  const TestRun punch = run_by(with_free_centre(cel_walls(25.0, 0.3, axial, {{0.3, 0.0}, {0.24, 0.0}, {0.5, 0.0}})),
-                               "auto", relative(1e-10));
+  const TestRun punch = run(with_free_centre(cel_walls(25.0, 0.3, axial, {{0.3, 0.0}, {0.24, 0.0}, {0.5, 0.0}})),
+                            "auto", relative(1e-10));
   const TestRun both =
-      run_by(cel_scenario(Configuration::simple, 25.0, 0.3, path({0.15, 0.12, 0.25})), "auto", relative(1e-10));
+      run(cel_scenario(Configuration::simple, 25.0, 0.3, path({0.15, 0.12, 0.25})), "auto", relative(1e-10));
   ASSERT_EQ(punch.record.status, RunStatus::complete) << punch.record.message;
   EXPECT_LE(difference(punch.outputs("w0.force"), both.outputs("axial.force")), 1e-8);
   EXPECT_LE(difference(punch.outputs("w1.force"), both.outputs("axial.force")), 1e-8);
@@ -280,13 +280,13 @@ TEST(CelForceControl, ReachesTheStatesOfDisplacementControl) {
                                         << ", E/Y = " << softness);
       const std::vector<double> corners{0.1, 0.0975, 0.14};
       const TestRun driven =
-          run_by(with_points(cel_scenario(configuration, softness, 0.3, path(corners)), 1), "auto", relative(1e-11));
+          run(with_points(cel_scenario(configuration, softness, 0.3, path(corners)), 1), "auto", relative(1e-11));
       const std::vector<double> force = driven.outputs("axial.force");
       const TestRun pressed =
-          run_by(with_points(cel_scenario(configuration, softness, 0.3,
-                                          {force_ramp(force[1]), force_ramp(force[2]), force_ramp(force[3])}),
-                             1),
-                 "auto", relative(1e-11));
+          run(with_points(cel_scenario(configuration, softness, 0.3,
+                                       {force_ramp(force[1]), force_ramp(force[2]), force_ramp(force[3])}),
+                          1),
+              "auto", relative(1e-11));
       ASSERT_EQ(pressed.record.status, RunStatus::complete) << pressed.record.message;
       const std::vector<double> reached = pressed.outputs("axial.displacement");
       for (std::size_t k = 0; k < corners.size(); ++k) EXPECT_NEAR(reached[k + 1], corners[k], 1e-8) << k;
@@ -300,10 +300,10 @@ TEST(CelForceControl, ReachesTheStatesOfDisplacementControl) {
 TEST(CelForceControl, ReachesThemAroundAFreeCentre) {
   const std::vector<Vector3d> axial{{0, 0, 1}, {0, 0, -1}};
   CheckedScenario scenario = with_free_centre(cel_walls(40.0, 0.3, axial, {{0.2, 0.0}, {0.18, 0.0}}));
-  const TestRun driven = run_by(with_points(scenario, 1), "auto", relative(1e-10));
+  const TestRun driven = run(with_points(scenario, 1), "auto", relative(1e-10));
   const std::vector<double> force = driven.outputs("w0.force");
   scenario.loading.walls[0].steps = {force_ramp(force[1]), force_ramp(force[2])};
-  const TestRun pressed = run_by(with_points(scenario, 1), "auto", relative(1e-10));
+  const TestRun pressed = run(with_points(scenario, 1), "auto", relative(1e-10));
   ASSERT_EQ(pressed.record.status, RunStatus::complete) << pressed.record.message;
   EXPECT_LE(difference(pressed.outputs("w0.displacement"), driven.outputs("w0.displacement")), 1e-7);
   EXPECT_LE(difference(pressed.outputs("w1.force"), driven.outputs("w1.force")), 1e-7);
@@ -311,7 +311,7 @@ TEST(CelForceControl, ReachesThemAroundAFreeCentre) {
 
 TEST(CelForceControl, LetsAWallStandWhereItsForceEnds) {
   const TestRun now =
-      run_by(cel_scenario(Configuration::simple, 25.0, 0.3, {force_ramp(0.03), force_ramp(0.0), hold()}), "auto");
+      run(cel_scenario(Configuration::simple, 25.0, 0.3, {force_ramp(0.03), force_ramp(0.0), hold()}), "auto");
   ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
   EXPECT_NEAR(now.last("axial.force"), 0.0, 1e-15);
   // A dent remains.
@@ -323,12 +323,12 @@ TEST(CelForceControl, LetsWallsWithoutForceGiveWay) {
   // Two walls make the particle bulge against idle walls, one of which begins with a gap.
   const std::vector<Vector3d> axial{{0, 0, 1}, {0, 0, -1}};
   const std::vector<Vector3d> all{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}};
-  const TestRun alone = run_by(with_points(cel_walls(25.0, 0.3, axial, {{0.3, 0.3}}), 6), "auto");
+  const TestRun alone = run(with_points(cel_walls(25.0, 0.3, axial, {{0.3, 0.3}}), 6), "auto");
   CheckedScenario scenario = cel_walls(25.0, 0.3, all, {{0.3, 0.3, 0.0, 0.0}});
   scenario.loading.walls[2].steps = scenario.loading.walls[3].steps = {force_ramp(0.0)};
   scenario.loading.walls[3].gap = 0.02;
   for (const char* integrator : {"auto", "ida"}) {
-    const TestRun now = run_by(with_points(scenario, 6), integrator);
+    const TestRun now = run(with_points(scenario, 6), integrator);
     ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
     EXPECT_LE(difference(now.outputs("w0.force"), alone.outputs("w0.force")), 1e-6);
     for (const char* wall : {"w2", "w3"}) {
@@ -345,7 +345,7 @@ TEST(CelForceControl, LetsTheCentreGoToWallsWithoutForce) {
   CheckedScenario scenario = with_free_centre(cel_walls(10.0, 0.49, normals, {{0.0, 0.15}}));
   scenario.loading.walls[0].steps = {force_ramp(0.0)};
   for (const char* integrator : {"auto", "ida", "gsl-rk8pd"}) {
-    const TestRun now = run_by(with_points(scenario, 3), integrator);
+    const TestRun now = run(with_points(scenario, 3), integrator);
     ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
     EXPECT_EQ(now.last("w0.force"), 0.0);
     EXPECT_NEAR(now.last("w0.displacement"), -0.15, 1e-6);
@@ -364,9 +364,9 @@ TEST(CelForceControl, BeginsAndEndsAtZeroWhileTheOtherWallMoves) {
     return still;
   }();
   for (const char* integrator : {"auto", "ida", "gsl-rk8pd"}) {
-    const TestRun now = run_by(with_points(scenario, 6), integrator, relative(1e-9));
+    const TestRun now = run(with_points(scenario, 6), integrator, relative(1e-9));
     ASSERT_EQ(now.record.status, RunStatus::complete) << integrator << ": " << now.record.message;
-    const TestRun still = run_by(with_points(at_rest, 6), integrator, relative(1e-9));
+    const TestRun still = run(with_points(at_rest, 6), integrator, relative(1e-9));
     for (const char* column : {"w0.force", "w1.force", "w0.overlap", "w1.overlap"})
       EXPECT_LE(difference(now.outputs(column), still.outputs(column)), 1e-7) << integrator << ": " << column;
   }
@@ -374,7 +374,7 @@ TEST(CelForceControl, BeginsAndEndsAtZeroWhileTheOtherWallMoves) {
 
 TEST(CelForceControl, StandsStillUnderNoForceAfterAnyStep) {
   // The second step ends without contact; no force then leaves the wall there.
-  const TestRun now = run_by(
+  const TestRun now = run(
       with_points(cel_scenario(Configuration::simple, 50.0, 0.3, {ramp(0.2), ramp(0.1), force_ramp(0.0)}), 4), "auto");
   ASSERT_EQ(now.record.status, RunStatus::complete) << now.record.message;
   const std::vector<double> displacement = now.outputs("axial.displacement");
@@ -390,16 +390,16 @@ TEST(CelForceControl, StandsStillUnderNoForceAfterAnyStep) {
 // --- limits and warnings
 
 TEST(CelLimit, IsWhereTheStiffnessBecomesInfinite) {
-  const TestRun die = run_by(cel_scenario(Configuration::die, 4.0, 0.3, {ramp(0.5)}), "auto");
+  const TestRun die = run(cel_scenario(Configuration::die, 4.0, 0.3, {ramp(0.5)}), "auto");
   EXPECT_EQ(die.record.status, RunStatus::stopped);
   EXPECT_EQ(die.record.limit, Limit::applicability) << die.record.message;
   EXPECT_GT(die.last("axial.displacement"), 0.4);
-  const TestRun all_sides = run_by(cel_scenario(Configuration::hydrostatic, 4.0, 0.45, {ramp(0.3)}), "auto");
+  const TestRun all_sides = run(cel_scenario(Configuration::hydrostatic, 4.0, 0.45, {ramp(0.3)}), "auto");
   EXPECT_EQ(all_sides.record.limit, Limit::applicability) << all_sides.record.message;
 }
 
 TEST(CelLimit, IsWhereTheContactsCoverTheSurface) {
-  const TestRun now = run_by(cel_scenario(Configuration::hydrostatic, 25.0, 0.49, {ramp(0.4)}), "auto");
+  const TestRun now = run(cel_scenario(Configuration::hydrostatic, 25.0, 0.49, {ramp(0.4)}), "auto");
   EXPECT_EQ(now.record.status, RunStatus::stopped);
   EXPECT_EQ(now.record.limit, Limit::surface_covered) << now.record.message;
   EXPECT_NEAR(now.last("coverage"), 1.7, 1e-7);
@@ -413,7 +413,7 @@ TEST(CelLimit, IsNotMetInsideTheFittedRange) {
   for (const auto& [configuration, end] : ranges) {
     for (const double softness : {6.25, 25.0, 200.0}) {
       for (const double nu : {0.0, 0.3, 0.45, 0.49}) {
-        const TestRun now = run_by(with_points(cel_scenario(configuration, softness, nu, {ramp(end)}), 10), "auto");
+        const TestRun now = run(with_points(cel_scenario(configuration, softness, nu, {ramp(end)}), 10), "auto");
         EXPECT_EQ(now.record.status, RunStatus::complete)
             << "E/Y = " << softness << ", nu = " << nu << ": " << now.record.message;
         EXPECT_EQ(now.record.warnings, std::vector<std::string>{}) << "E/Y = " << softness << ", nu = " << nu;
@@ -426,7 +426,7 @@ TEST(CelLimit, IsNotMetInsideTheFittedRange) {
 
 TEST(CelWarning, NamesWhatTheLawIsNotFittedTo) {
   const auto warnings = [](double softness, double end) {
-    return run_by(cel_scenario(Configuration::simple, softness, 0.3, {ramp(end)}), "auto").record.warnings;
+    return run(cel_scenario(Configuration::simple, softness, 0.3, {ramp(end)}), "auto").record.warnings;
   };
   ASSERT_EQ(warnings(6.2, 0.1).size(), 1u);
   EXPECT_TRUE(contains(warnings(6.2, 0.1)[0], "E/Y is below 6.25")) << warnings(6.2, 0.1)[0];
@@ -445,7 +445,7 @@ TEST(CelWarning, SaysWhereTheStoredEnergyIsNegative) {
   }();
   const auto warnings = [&](std::size_t count, double end) {
     const std::vector<Vector3d> normals(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
-    return run_by(cel_walls(25.0, 0.3, normals, {std::vector<double>(count, end)}), "auto").record.warnings;
+    return run(cel_walls(25.0, 0.3, normals, {std::vector<double>(count, end)}), "auto").record.warnings;
   };
   EXPECT_TRUE(warnings(2, 0.15).empty());
   EXPECT_TRUE(warnings(6, 0.3).empty());
