@@ -239,6 +239,25 @@ TEST_F(CopiesOfAScene, AgreeWallByWallOnceTurnedBack) {
   EXPECT_LT(distance_between(own, by_wall(other).record.history).value, 1e-10);
 }
 
+TEST_F(CopiesOfAScene, AgreeOnceTheMotionOfAllWallsIsAdded) {
+  const SharedMotion motion = shared_motion(scenario_, 3).value();
+  EXPECT_GT(motion.at(1.0).norm(), 1e-5);
+  EXPECT_LT((motion.at(0.5) - 0.5 * motion.at(1.0)).norm(), 1e-18) << "at a constant velocity";
+  const monograin::Run copy = run_scenario(carried(scenario_, motion));
+  ASSERT_EQ(copy.record.status, RunStatus::complete) << copy.record.message;
+  EXPECT_LT(distance_between(by_wall(run_, motion).record.history, by_wall(copy).record.history).value, 1e-10);
+  const Distance still = distance_between(by_wall(run_).record.history, by_wall(copy).record.history);
+  EXPECT_GT(still.value, 0.1) << "the walls move";
+}
+
+TEST_F(CopiesOfAScene, AreCarriedOnlyWhereTheProgramSaysWhenAStepEnds) {
+  const auto until = [](std::string_view end) {
+    return parse_scenario(k_cell, "cell.toml", {fmt::format("loading.wall[3].steps[0].{}", end)});
+  };
+  EXPECT_TRUE(shared_motion(until("duration=1"), 3));
+  EXPECT_FALSE(shared_motion(until("until={force=1}"), 3));
+}
+
 TEST_F(CopiesOfAScene, TellEventsByTheWallsOfTheirClasses) {
   const CheckedScenario die = parse_scenario(default_scenario_text(), "default");
   const monograin::Run run = by_wall(run_scenario(die));
@@ -280,6 +299,11 @@ TEST_F(CopiesOfAScene, BreakARuleWhereAStopIsNotShared) {
               return of.radius > 1.0 ? stopped(run_scenario(of, wrap)) : run_scenario(of, wrap);
             }),
             (std::set<std::string>{"scale"}));
+  // One that depends on a wall at rest.
+  EXPECT_EQ(checks_with([&](const CheckedScenario& of, const SystemWrapper& wrap) {
+              return of.loading.walls.front().is_fixed ? run_scenario(of, wrap) : stopped(run_scenario(of, wrap));
+            }),
+            (std::set<std::string>{"carried"}));
   // One of an integrated form.
   EXPECT_EQ(checks_with([&](const CheckedScenario& of, const SystemWrapper& wrap) {
               return of.numerics.integrator == "ida" ? stopped(run_scenario(of, wrap)) : run_scenario(of, wrap);

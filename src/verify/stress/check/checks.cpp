@@ -35,8 +35,6 @@ constexpr double k_sample_multiple = 10.0;
 constexpr std::uint64_t k_samples = 8;  // in pairs
 // A run is stuck if it takes this many times as long as the scene's own run or its reference.
 constexpr double k_patience = 4.0;
-// Overlaps over R0 below which there is nothing but round-off (docs/reference/limits.md).
-// Sum of the squared components of normals along a direction that they do not span: round-off.
 constexpr double k_slower = 1e6;
 constexpr Magnification k_magnification{.length = 731.0585, .stress = 1.618034e-5};
 // Number of turned copies of a scene that a limit has ended, and of further copies that measure their mutual distance.
@@ -136,10 +134,11 @@ bool is_left_elsewhere(const Run& run, double tolerance, double negligible) {
 
 /// True if loaded contacts hold a centre in every direction in a row. Force-controlled walls do not hold it. Along
 /// directions without support, idle contacts move the centre.
-bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t row, double tolerance) {
+/// @param hold  what else holds it: directions in which nothing moves it
+bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t row, double tolerance,
+             Eigen::Matrix3d hold = Eigen::Matrix3d::Zero()) {
   const Table& table = run.record.history;
   const double least = tolerance * largest_of_kind(table, "force");
-  Eigen::Matrix3d hold = Eigen::Matrix3d::Zero();
   for (const ContactClass& c : classes) {
     const auto force = table.find(c.name + ".force");
     if (c.takes_force || !force || !(std::abs(table.at(row, *force)) > least)) continue;
@@ -147,6 +146,32 @@ bool is_held(const Run& run, std::span<const ContactClass> classes, std::size_t 
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hold, Eigen::EigenvaluesOnly);
   return solver.eigenvalues()[0] > k_same_direction;
+}
+
+/// True if contacts determine where the centre is in all rows but the first: those of walls whose displacement is
+/// prescribed hold it, and all others bear. A wall without load rests, and an idle one moves a loose particle: where
+/// they are depends on their path.
+bool is_always_held(const Run& run, double tolerance) {
+  const Table& table = run.record.history;
+  const std::vector<ContactClass> classes = make_scene(run.scenario).classes;
+  const double least = tolerance * largest_of_kind(table, "force");
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+  for (const ContactClass& c : classes) {
+    for (const Eigen::Vector3d& normal : c.normals) normals += normal * normal.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normals);
+  Eigen::Matrix3d unmoved = Eigen::Matrix3d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if (solver.eigenvalues()[k] <= k_same_direction)
+      unmoved += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose();
+  }
+  for (std::size_t row = 1; row < table.row_count(); ++row) {
+    if (!is_held(run, classes, row, tolerance, unmoved)) return false;
+    for (const ContactClass& c : classes) {
+      if (c.takes_force && !(std::abs(table.at(row, *table.find(c.name + ".force"))) > least)) return false;
+    }
+  }
+  return true;
 }
 
 /// True if an integrator has given up for a stated reason: the run then does not show how the scene goes on.
@@ -233,7 +258,7 @@ class SceneCheck {
 
   /// Checks all copies of a scene that a limit has ended; of a complete scene, those that the effort asks for.
   void check_copies(const Run& run) {
-    constexpr std::uint64_t k_kinds = 4;
+    constexpr std::uint64_t k_kinds = 5;
     const bool needs_all = run.record.status != RunStatus::complete || effort_.copies == StressEffort::k_all_copies;
     const std::uint64_t kind = effort_.copies % k_kinds;
     const std::uint64_t which = effort_.copies / k_kinds;
@@ -243,6 +268,7 @@ class SceneCheck {
       if (needs_all || (kind == 2 && which % k_rotations == sample)) check_turned(run, sample);
     }
     if (run.integrator.used == integrators::k_explicit) return;
+    if (needs_all || kind == 4) check_carried(run, which);
     const bool is_direct = run.integrator.is_direct();
     if ((needs_all || (kind == 3 && which % 2 == 0)) && run.integrator.used != integrators::k_ida)
       check_form(run, integrators::k_ida);
@@ -286,6 +312,18 @@ class SceneCheck {
   void check_turned(const Run& run, std::uint64_t sample) {
     const std::optional<Run> other = turned_back(sample);
     if (other) compare("turned", by_wall(run), *other, {.is_same_form = true, .copies = turned_copies(sample)});
+  }
+
+  /// Checks that a motion of all walls carries the particle along and changes nothing else. A copy without a direct
+  /// form, because its walls are no longer alike, does not show the digits of a direct scene.
+  void check_carried(const Run& run, std::uint64_t sample) {
+    if (!scenario_.loading.centre_is_free || !is_always_held(run, tolerance_)) return;
+    const std::optional<SharedMotion> motion = shared_motion(scenario_, sample);
+    if (!motion) return;
+    const CheckedScenario copy = carried(scenario_, *motion);
+    if (run.integrator.is_direct() && !make_scene(copy).system->is_solvable()) return;
+    const std::optional<Run> other = try_run(copy, "carried");
+    if (other) compare("carried", by_wall(run, *motion), by_wall(*other), {.copies = turned_copies(sample)});
   }
 
   /// Compares the reference with a run by another integrator; the direct form with one at the tolerance k_form_rtol.

@@ -44,7 +44,8 @@ struct StressVerdict {
 
 /// Runs a scene, and other scenes that must agree with it: in the reference form, slower, with a step cut in two, for
 /// elastic laws forth and back; and its copies: with a larger and softer particle, with all walls turned, with walls in
-/// another order, in another form of the equations. Exceptions of a run become violations.
+/// another order, with a motion of all walls that carries a free centre along, in another form of the equations.
+/// Exceptions of a run become violations.
 ///
 /// Ends. A limit, or an integrator that gives up for a stated reason, is accepted if all copies end there, too: at the
 /// same limit, within the tolerance of the time. An integrated form may give up where another form goes on.

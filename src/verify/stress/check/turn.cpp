@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <span>
 #include <string>
@@ -16,6 +18,7 @@
 #include "catalogue.hpp"
 #include "scene/scene.hpp"
 #include "stress/dice.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -24,6 +27,7 @@ bool takes_free_walls(const CheckedScenario& scenario) {
   return std::ranges::count(find_model(scenario.model)->configurations, std::string_view("walls")) > 0;
 }
 
+/// The walls of a scene, also of a preset, as free walls.
 std::vector<WallSpec> specs_of(const CheckedScenario& scenario) {
   std::vector<WallSpec> specs;
   for (const Wall& wall : make_walls(scenario)) {
@@ -96,6 +100,39 @@ Table history_by_wall(const Run& run, const Eigen::Matrix3d& rotation) {
   return result;
 }
 
+/// Duration [s] of a step, if all walls that move have it in their programs, and say where it ends.
+std::optional<double> known_duration(const std::vector<WallSpec>& walls, std::size_t step) {
+  std::optional<double> duration;
+  for (const WallSpec& wall : walls) {
+    if (wall.is_fixed) continue;
+    if (step >= wall.steps.size()) return std::nullopt;
+    const Step& own = wall.steps[step];
+    const bool is_known = own.duration && own.until.empty() && own.kind != Step::Kind::detach;
+    if (!is_known || (duration && *duration != *own.duration)) return std::nullopt;
+    duration = own.duration;
+  }
+  return duration;
+}
+
+/// Adds to the displacements of a wall, at the ends of its steps, those by which a motion brings it nearer.
+void carry(WallSpec& wall, const SharedMotion& motion) {
+  const Eigen::Vector3d normal = Eigen::Vector3d(wall.normal[0], wall.normal[1], wall.normal[2]).stableNormalized();
+  std::optional<double> stands_at = -wall.gap;  // nothing while a force moves the wall
+  double begin = 0.0;
+  wall.steps.resize(motion.times.size());
+  for (std::size_t k = 0; k < wall.steps.size(); ++k) {
+    Step& step = wall.steps[k];
+    step.duration = motion.times[k] - begin;
+    begin = motion.times[k];
+    if (step.kind == Step::Kind::force) stands_at.reset();
+    if (step.kind == Step::Kind::displacement) stands_at = step.target;
+    if (!stands_at) continue;
+    step.kind = Step::Kind::displacement;
+    step.target = *stands_at - normal.dot(motion.places[k]);
+  }
+  wall.is_fixed = false;
+}
+
 Table events_by_wall(const Run& run) {
   const Table& events = run.record.events;
   std::vector<Column> columns = events.columns();
@@ -142,10 +179,81 @@ std::optional<CheckedScenario> reordered(CheckedScenario scenario) {
   return scenario;
 }
 
+Eigen::Vector3d SharedMotion::at(double time) const {
+  double begin = 0.0;
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (time <= times[k]) return from + (time - begin) / (times[k] - begin) * (places[k] - from);
+    begin = times[k];
+    from = places[k];
+  }
+  return from;
+}
+
+std::optional<SharedMotion> shared_motion(const CheckedScenario& scenario, std::uint64_t sample) {
+  if (!takes_free_walls(scenario)) return {};
+  const std::vector<WallSpec> walls = specs_of(scenario);
+  double largest = 0.0;
+  std::size_t steps = 0;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const WallSpec& wall : walls) {
+    const Eigen::Vector3d normal(wall.normal[0], wall.normal[1], wall.normal[2]);
+    spread += normal * normal.transpose() / normal.squaredNorm();
+    steps = std::max(steps, wall.steps.size());
+    for (const Step& step : wall.steps) {
+      if (step.kind == Step::Kind::displacement) largest = std::max(largest, std::abs(step.target));
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  Dice dice(sample);
+  SharedMotion motion;
+  for (std::size_t k = 0; k < steps; ++k) {
+    const std::optional<double> duration = known_duration(walls, k);
+    if (!duration) return {};
+    motion.times.push_back((motion.times.empty() ? 0.0 : motion.times.back()) + *duration);
+    motion.places.emplace_back(Eigen::Vector3d::Zero());
+    for (int axis = 0; axis < 3; ++axis) {
+      const double share = dice.uniform(-1.0, 1.0);
+      if (solver.eigenvalues()[axis] > k_same_direction)
+        motion.places.back() += share * largest * solver.eigenvectors().col(axis);
+    }
+  }
+  return largest > 0.0 ? std::optional(motion) : std::nullopt;
+}
+
+CheckedScenario carried(CheckedScenario scenario, const SharedMotion& motion) {
+  scenario.loading.walls = specs_of(scenario);
+  scenario.loading.configuration = Loading::Configuration::walls;
+  for (WallSpec& wall : scenario.loading.walls) carry(wall, motion);
+  return scenario;
+}
+
 Run by_wall(const Run& run, const Eigen::Matrix3d& rotation) {
   Run result = run;
   result.record.history = history_by_wall(run, rotation);
   result.record.events = events_by_wall(run);
+  return result;
+}
+
+Run by_wall(const Run& run, const SharedMotion& motion) {
+  Run result = by_wall(run);
+  const Table& still = result.record.history;
+  Table moving(still.columns());
+  moving.header = still.header;
+  const std::vector<WallSpec> walls = specs_of(run.scenario);
+  for (std::size_t row = 0; row < still.row_count(); ++row) {
+    std::vector<double> values(still.row(row).begin(), still.row(row).end());
+    const Eigen::Vector3d place = motion.at(still.at(row, 0));
+    for (std::size_t axis = 0; axis < k_centre.size(); ++axis) {
+      if (const auto c = still.find(k_centre[axis])) values[*c] += place[static_cast<Eigen::Index>(axis)];
+    }
+    for (const WallSpec& wall : walls) {
+      const Eigen::Vector3d normal(wall.normal[0], wall.normal[1], wall.normal[2]);
+      values[*still.find(wall.name + ".displacement")] -= normal.stableNormalized().dot(place);
+    }
+    moving.append(values);
+  }
+  result.record.history = std::move(moving);
   return result;
 }
 
