@@ -20,8 +20,9 @@ struct CurveDifference {
   double l2 = 0.0;       ///< sqrt( int (b - a)^2 dx / int a^2 dx )
 
   /// sqrt( int (b - a)^2 dx ) / int |a| dx: Edmans and Sinka (n.d.), eq. 7, |a| added for curves that change sign.
-  /// Dimensionless only if x is (the source takes displacement over radius). A uniform relative error r of a straight
-  /// line from 0 to x_max gives 2 r/sqrt(3 x_max).
+  /// Dimensionless only if x is; compare() takes a length over R0, as the source does, if the file of a has R0 in its
+  /// header, and any other x with a unit over its range. A uniform relative error r of a straight line from 0 to x_max
+  /// gives 2 r/sqrt(3 x_max).
   double area_error = 0.0;
   /// max |b - a| / |a(x_max)|, where x_max is the largest x and a its value when x_max is first reached (max |a| if
   /// that value is zero): Edmans and Sinka (n.d.), eq. 8, which lacks the absolute value.

@@ -291,8 +291,8 @@ std::vector<Diagnostic> System::warnings() const {
     found.push_back({"a wall goes beyond half the radius, where the law is not fitted", "overlap/R0", deepest_});
   if (least_stored_ < k_least_stored) {
     found.push_back(
-        {"the stored energy is negative: wide contacts of neighbouring walls that nothing balances act on each other "
-         "more than on themselves, for which the law is not made",
+        {"the stored energy is negative: contacts so wide act on each other more than on themselves, for which the law "
+         "is not made",
          "least stored energy/work", least_stored_});
   }
   return found;

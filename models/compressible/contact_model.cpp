@@ -294,6 +294,7 @@ Model contact_model() noexcept {
           .events = k_events,
           .domain = k_domain,
           .presets = presets(),
+          .has_pores = true,
           .objections = objections,
           .bind = bind,
           .parameters = parameters,

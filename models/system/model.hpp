@@ -281,6 +281,8 @@ struct Model {
   bool moves_surface = false;
   /// True if walls cannot pull, and a step that prescribes a negative force ends the run.
   bool stops_when_pulled = false;
+  /// True if pores of the particle close, so that it may become smaller than it was.
+  bool has_pores = false;
 
   // --- functions
 

@@ -303,7 +303,8 @@ class CurveDifference(NamedTuple):
         linf_at: x of the largest difference.
         l2: root of the integral of the squared difference over x, over the same root for the reference itself.
         area_error: root of the integral of the squared difference over x, over the integral of the magnitude of the
-            reference (Edmans and Sinka, eq. 7).
+            reference (Edmans and Sinka, eq. 7); a length x counts in units of ``R0``, any other x with a unit in
+            units of its range.
         peak_error: largest difference over the magnitude of the reference at its largest x (Edmans and Sinka, eq. 8).
         coverage: share of the reference's path on which the tables could be compared.
     """

@@ -141,11 +141,13 @@ int compare(const CompareOptions& options) {
       throw UsageError(in_own_words(error));
     }
   }();
-  print_data("{:<28}{:>12}{:>14}{:>12}{:>12}{:>12}{:>10}\n", "column", "L-infinity", "at " + options.x, "L2",
-             "area error", "peak error", "covered");
+  const std::string place = "at " + options.x;
+  const std::size_t width = std::max<std::size_t>(14, place.size() + 2);
+  print_data("{:<28}{:>12}{:>{}}{:>12}{:>12}{:>12}{:>10}\n", "column", "L-infinity", place, width, "L2", "area error",
+             "peak error", "covered");
   bool is_above = false;
   for (const CurveDifference& d : comparison.curves) {
-    print_data("{:<28}{:>12.4e}{:>14.6g}{:>12.4e}{:>12.4e}{:>12.4e}{:>9.1f}%\n", d.y, d.linf, d.linf_at, d.l2,
+    print_data("{:<28}{:>12.4e}{:>{}.6g}{:>12.4e}{:>12.4e}{:>12.4e}{:>9.1f}%\n", d.y, d.linf, d.linf_at, width, d.l2,
                d.area_error, d.peak_error, 100.0 * d.coverage);
     is_above = is_above || !(d.linf <= options.tolerance.value_or(k_infinity));
   }

@@ -1,6 +1,7 @@
 #include "history/compare.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
@@ -327,6 +328,19 @@ struct PathIntegrals {
   return {};
 }
 
+/// Length of the abscissa that makes it a pure number: R0 for a length of a particle, and the range of any other
+/// quantity with a unit. The area error depends on it.
+[[nodiscard]] double unit_of_path(const Table& a, const std::string& x) {
+  const Column& column = a.columns()[*a.find(x)];
+  if (column.unit.empty()) return 1.0;
+  const auto radius = std::ranges::find(a.header, "R0", [](const auto& entry) { return entry.first; });
+  double value = 0.0;
+  if (column.unit == "m" && radius != a.header.end()) {
+    std::from_chars(radius->second.data(), radius->second.data() + radius->second.size(), value);
+  }
+  return value > 0.0 ? value : range_of(a.column(x));
+}
+
 /// Rows of a column of words: all rows, or only those at which the word changes.
 [[nodiscard]] std::vector<std::size_t> word_rows(const Table& table, std::size_t column, bool only_changes) {
   std::vector<std::size_t> rows;
@@ -388,6 +402,7 @@ Comparison compare_tables(const Table& a, const Table& b, const std::string& x, 
   }
   const auto x_a = a.column(place);
   const auto x_b = b.column(place);
+  const double unit = unit_of_path(a, place);
   for (const std::string& heading : headings) {
     std::string problem = missing_column(a, b, heading);
     if (problem.empty() && a.columns()[*a.find(heading)].holds_words()) {
@@ -396,6 +411,7 @@ Comparison compare_tables(const Table& a, const Table& b, const std::string& x, 
       try {
         result.curves.push_back(compare_curves(x_a, a.column(heading), x_b, b.column(heading)));
         result.curves.back().y = heading;
+        result.curves.back().area_error *= std::sqrt(unit);
         const double coverage = result.curves.back().coverage;
         if (coverage < k_least_coverage) problem = fmt::format("covers only {:.4g} % of the curve", 100.0 * coverage);
       } catch (const std::runtime_error& fault) {

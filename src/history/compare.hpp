@@ -30,6 +30,9 @@ inline constexpr double k_least_coverage = 0.999;
 /// Compares columns of table b with those of the reference a. Columns of words are compared row by row if the tables
 /// have the same x in every row, otherwise by the order of their words. A column that cannot be compared becomes a gap.
 ///
+/// The area error of compare_curves() depends on the unit of x. Here a length x counts in units of R0, if the header of
+/// a has it, and any other x with a unit in units of its range.
+///
 /// @param x  name or heading of a column of a, the abscissa; empty: the first column
 /// @param y  name or heading of a column of a; empty: every column except x, step and row
 /// @throws std::runtime_error if a lacks these columns, or x holds words

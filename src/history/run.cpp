@@ -4,11 +4,13 @@
 #include <xxhash.h>
 
 #include <chrono>
+#include <span>
 
 #include "catalogue.hpp"
 #include "history/energy.hpp"
 #include "history/recorder.hpp"
 #include "history/sensitivities.hpp"
+#include "history/wall_checks.hpp"
 #include "scenario/remarks.hpp"
 
 namespace monograin {
@@ -73,6 +75,18 @@ RunRecord record_with(Recorder& recorder, Scene& scene, std::string_view integra
   record.history = recorder.take_history();
   record.events = recorder.take_events();
   return record;
+}
+
+/// Adds what the walls of a history show of a scene that its law does not describe.
+void warn_of_walls(Run& run, std::span<const ContactClass> classes) {
+  const CheckedScenario& scenario = run.scenario;
+  const Model& model = *find_model(scenario.model);
+  if (!model.has_walls()) return;
+  const auto add = [&](std::optional<std::string> warning) {
+    if (warning) run.record.warnings.push_back(*std::move(warning));
+  };
+  if (!model.has_pores) add(space_warning(run.record.history, classes, scenario.radius));
+  if (model.has_free_centre && !scenario.loading.centre_is_free) add(balance_warning(run.record.history, classes));
 }
 
 }  // namespace
@@ -140,6 +154,7 @@ Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) 
     run.record.warnings.push_back(std::move(*warning));
     run.record.creates_energy = true;
   }
+  warn_of_walls(run, scene.classes);
   if (why_differences) add_sensitivities(run, *why_differences);
   run.record.history.header = header_of(run);
   run.record.events.header = run.record.history.header;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace monograin::compare_test {
@@ -221,6 +222,30 @@ TEST(CompareTables, TakesTheColumnThatIsNamed) {
   const auto comparison = compare_tables(history(2.0), history(3.0), "", "force[N]");
   ASSERT_EQ(comparison.curves.size(), 1u);
   EXPECT_EQ(comparison.curves[0].y, "force[N]");
+}
+
+TEST(CompareTables, GiveOneAreaErrorInAnyUnits) {
+  // A straight line with a uniform error of 5 %, up to x = 0.3 R0, or to 0.3 of any other unit.
+  const auto line = [](const char* unit, double length, double slope, bool has_radius) {
+    Table table({{"x", unit, {}}, {"y", "N", {}}});
+    if (has_radius) table.header = {{"R0", fmt::format("{}", length)}};
+    for (int k = 0; k <= 1000; ++k) {
+      const double x = 0.3e-3 * k;
+      table.append({{x * length, slope * x}});
+    }
+    return table;
+  };
+  const auto area_error = [&](const char* unit, double length, bool has_radius) {
+    const Table reference = line(unit, length, 1.0, has_radius);
+    return compare_tables(reference, line(unit, length, 1.05, has_radius), "x", "y").curves.front().area_error;
+  };
+  const double over_radius = 0.1 / std::sqrt(3.0 * 0.3);
+  EXPECT_NEAR(area_error("", 1.0, false), over_radius, 1e-6);
+  for (const double length : {1e-6, 1.0, 1e3}) {
+    EXPECT_NEAR(area_error("m", length, true), over_radius, 1e-6) << length;
+    EXPECT_NEAR(area_error("s", length, true), 0.1 / std::sqrt(3.0), 1e-6) << length << ": over the range";
+    EXPECT_NEAR(area_error("m", length, false), 0.1 / std::sqrt(3.0), 1e-6) << length << ": nothing says what R0 is";
+  }
 }
 
 TEST(CompareTables, RefusesWhatTheReferenceDoesNotHave) {
