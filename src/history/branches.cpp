@@ -17,6 +17,9 @@ constexpr double k_same_end = 1e-6;            ///< largest distance beyond the 
 constexpr std::size_t k_short_run = 2;         ///< longest path between two turns that may be noise, in rows
 constexpr std::size_t k_least_short_runs = 3;  ///< number of such paths from which on they are noise
 constexpr double k_noise_factor = 6.0;         ///< least turn over the median noise; none of thousands exceeds it
+constexpr double k_turn_reach = 20.0;          ///< path beside a turn that shows where it is, over the median noise
+constexpr std::size_t k_least_line = 3;        ///< least number of rows beside a turn that show where it is
+constexpr std::size_t k_turn_rows = 10;        ///< by which the row of the turn may be off
 constexpr double k_least_turn = 2e-3;          ///< least turn over the range of x
 
 [[nodiscard]] XyCurve up_to(const XyCurve& loading, double x) {
@@ -72,9 +75,42 @@ void compare_loading(const XyCurve& reference, const XyCurve& curve, BranchCompa
   line.coverage = difference.coverage;
 }
 
-/// Least distance by which x has to come back for a turn that is not noise, in units of x.
-[[nodiscard]] double least_turn(std::span<const double> x) {
-  const auto [lowest, highest] = std::ranges::minmax(x);
+/// Fit of x over the row by a straight line.
+struct Line {
+  double row = 0.0;  ///< mean
+  double x = 0.0;    ///< mean
+  double slope = 0.0;
+  double squares = 0.0;  ///< sum of the squared distances from the line
+
+  [[nodiscard]] double at(double other) const noexcept { return x + slope * (other - row); }
+};
+
+/// Line through rows `first` to `last`.
+[[nodiscard]] Line line_through(std::span<const double> x, std::size_t first, std::size_t last) {
+  Line line;
+  const auto count = static_cast<double>(last + 1 - first);
+  for (std::size_t k = first; k <= last; ++k) {
+    line.row += static_cast<double>(k) / count;
+    line.x += x[k] / count;
+  }
+  double products = 0.0;
+  double squares = 0.0;
+  for (std::size_t k = first; k <= last; ++k) {
+    const double away = static_cast<double>(k) - line.row;
+    products += away * (x[k] - line.x);
+    squares += away * away;
+  }
+  if (squares > 0.0) line.slope = products / squares;
+  for (std::size_t k = first; k <= last; ++k) {
+    const double off = x[k] - line.at(static_cast<double>(k));
+    line.squares += off * off;
+  }
+  return line;
+}
+
+}  // namespace
+
+double noise_in(std::span<const double> x) {
   std::vector<double> short_runs;
   std::size_t begin = 0;
   for (std::size_t k = 1; k < x.size(); ++k) {
@@ -83,11 +119,59 @@ void compare_loading(const XyCurve& reference, const XyCurve& curve, BranchCompa
     if (k - begin <= k_short_run && k + 1 < x.size() && begin > 0) short_runs.push_back(std::abs(x[k] - x[begin]));
     begin = k;
   }
-  const double least = k_least_turn * (highest - lowest);
-  if (short_runs.size() < k_least_short_runs) return least;
+  if (short_runs.size() < k_least_short_runs) return 0.0;
   const auto middle = short_runs.begin() + static_cast<std::ptrdiff_t>(short_runs.size() / 2);
   std::ranges::nth_element(short_runs, middle);
-  return std::max(least, k_noise_factor * *middle);
+  return *middle;
+}
+
+namespace {
+
+/// Least distance by which x has to come back for a turn that is not noise, in units of x.
+[[nodiscard]] double least_turn(std::span<const double> x) {
+  const auto [lowest, highest] = std::ranges::minmax(x);
+  return std::max(k_least_turn * (highest - lowest), k_noise_factor * noise_in(x));
+}
+
+/// Row next to a turn from which a line to the turn is drawn.
+/// @param step  -1: before the turn; 1: after it
+/// @param end   the farthest row
+[[nodiscard]] std::size_t row_beside(std::span<const double> x, std::size_t turn, int step, std::size_t end,
+                                     double reach) {
+  std::size_t row = turn;
+  for (std::size_t count = 0; row != end; ++count) {
+    if (count >= k_least_line && std::abs(x[row] - x[turn]) > reach) break;
+    row = step < 0 ? row - 1 : row + 1;
+  }
+  return row;
+}
+
+/// x of a turn in noise: where two straight lines meet that fit the rows of both sides best, whichever of the rows next
+/// to the turn belongs to which.
+/// @param begin  first row of the branch that ends at the turn
+/// @param end    last row of the branch that begins there
+[[nodiscard]] double smoothed_at(std::span<const double> x, std::size_t begin, std::size_t turn, std::size_t end,
+                                 double noise) {
+  const std::size_t first = row_beside(x, turn, -1, begin, k_turn_reach * noise);
+  const std::size_t last = row_beside(x, turn, 1, end, k_turn_reach * noise);
+  if (last - first < 2 * k_least_line) return x[turn];
+  const std::size_t lowest = std::max(first + 1, turn - std::min(turn, k_turn_rows));
+  const std::size_t highest = std::min(last - 2, turn + k_turn_rows);
+  double least = k_infinity;
+  double smoothed = x[turn];
+  for (std::size_t middle = lowest; middle <= highest; ++middle) {
+    const Line before = line_through(x, first, middle);
+    const Line after = line_through(x, middle + 1, last);
+    if (!(before.squares + after.squares < least)) continue;
+    least = before.squares + after.squares;
+    const double row = (after.at(0.0) - before.at(0.0)) / (before.slope - after.slope);
+    const bool meet = row >= static_cast<double>(first) && row <= static_cast<double>(last);
+    const double at = meet ? row : static_cast<double>(middle);
+    const double x_there = 0.5 * (before.at(at) + after.at(at));
+    // Lines beside a dwell meet beyond it, but x has not been farther than the turn.
+    smoothed = x[turn] > x[first] ? std::min(x_there, x[turn]) : std::max(x_there, x[turn]);
+  }
+  return smoothed;
 }
 
 }  // namespace
@@ -111,6 +195,17 @@ std::vector<std::size_t> turning_points(std::span<const double> x) {
   }
   if (x.size() > 1) turns.push_back(x.size() - 1);
   return turns;
+}
+
+std::vector<double> turning_values(std::span<const double> x, std::span<const std::size_t> turns) {
+  const double noise = noise_in(x);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    const bool is_end = k == 0 || k + 1 == turns.size();
+    values.push_back(is_end || noise == 0.0 ? x[turns[k]]
+                                            : smoothed_at(x, turns[k - 1], turns[k], turns[k + 1], noise));
+  }
+  return values;
 }
 
 XyCurve first_loading(const XyCurve& curve) {

@@ -38,6 +38,14 @@ struct Excursion {
 /// by more than six times the median of their lengths, and by more than 0.2 % of its range.
 [[nodiscard]] std::vector<std::size_t> turning_points(std::span<const double> x);
 
+/// Noise of x: the median length of paths of at most two rows between turns; 0 if there are less than three of them.
+[[nodiscard]] double noise_in(std::span<const double> x);
+
+/// x at turning points. The extreme row of a turn has the largest noise of its neighbours: without it, x turns where
+/// straight lines through the rows of both sides meet. The first and the last row have their own x.
+/// @param turns  turning_points() of x
+[[nodiscard]] std::vector<double> turning_values(std::span<const double> x, std::span<const std::size_t> turns);
+
 /// Mean slope dy/dx of the first part of an unloading, over which y falls by 5 %; of the whole unloading if y falls by
 /// less.
 [[nodiscard]] double unloading_slope(const XyCurve& unloading);

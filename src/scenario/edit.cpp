@@ -8,6 +8,7 @@
 #include "scenario/cells.hpp"
 #include "scenario/document.hpp"
 #include "scenario/faults.hpp"
+#include "scenario/overrides.hpp"
 #include "scenario/plain_paths.hpp"
 
 namespace monograin {
@@ -32,15 +33,16 @@ void apply(std::string& text, std::string_view path, const std::string& new_valu
   const std::size_t dot = path.rfind('.');
   const std::string_view key = path.substr(dot + 1);
   const toml::table root = parse_document(text, "text");
-  const toml::table* table = root.at_path(path.substr(0, dot)).as_table();
+  const toml::table* table = dot == std::string_view::npos ? &root : root.at_path(path.substr(0, dot)).as_table();
   if (const toml::node* value = table == nullptr ? nullptr : table->get(key)) {
     const std::size_t begin = offset_of(text, value->source().begin);
     text.replace(begin, offset_of(text, value->source().end) - begin, new_value);
     return;
   }
-  const std::size_t begin = table == nullptr ? text.size() : offset_of(text, table->source().begin);
-  const bool has_header = begin < text.size() && text[begin] == '[' && !table->is_inline();
-  if (!has_header) throw std::runtime_error(fmt::format("there is no place for '{}'", path));
+  const bool is_named = table != nullptr && table != &root && !table->is_inline();
+  const std::size_t begin = is_named ? offset_of(text, table->source().begin) : text.size();
+  const bool has_header = begin < text.size() && text[begin] == '[';
+  if (!has_header || path.ends_with(']')) throw std::runtime_error(fmt::format("there is no place for '{}'", path));
   const std::string line = fmt::format("{} = {}\n", key, new_value);
   const std::size_t end = text.find('\n', begin);
   if (end == std::string::npos) {
@@ -57,6 +59,13 @@ std::string with_values(std::string text, const std::vector<TextEdit>& edits) {
     for (const std::string& path : plain_paths(edit.path)) apply(text, path, edit.value);
   }
   return text;
+}
+
+std::string with_override(const std::string& text, const std::string& key_and_value) {
+  FaultList faults;
+  const std::optional<TextEdit> edit = edit_of(key_and_value, faults);
+  if (!edit) throw std::runtime_error(fmt::format("there is no value in '{}'", key_and_value));
+  return with_values(text, {*edit});
 }
 
 std::string text_of_table(std::string_view document, std::string_view key, const std::string& origin) {

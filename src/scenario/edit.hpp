@@ -18,6 +18,10 @@ struct TextEdit {
 /// @throws std::runtime_error if a key is absent and its table has no header
 [[nodiscard]] std::string with_values(std::string text, const std::vector<TextEdit>& edits);
 
+/// The text with a `key=value` text, as of `--set`, written into it.
+/// @throws std::runtime_error if the text has no place for it
+[[nodiscard]] std::string with_override(const std::string& text, const std::string& key_and_value);
+
 /// A table of a larger document as a document of its own; comments are lost.
 /// @throws ScenarioError if there is no such table
 [[nodiscard]] std::string text_of_table(std::string_view document, std::string_view key, const std::string& origin);

@@ -61,6 +61,12 @@ class PathParser {
   std::string_view text_;
 };
 
+std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
 bool begins_like_a_bare_text(std::string_view value) {
   const auto first = value.find_first_not_of(" \t");
   return first == std::string_view::npos || std::string_view("[{\"'").find(value[first]) == std::string_view::npos;
@@ -73,8 +79,8 @@ class Override {
 
   /// @param number  the value, if it is known; none: the text is parsed
   void apply(toml::table& root, std::optional<double> number = {}) {
-    const std::size_t equals = text_.find('=');
-    if (equals == std::string::npos) return fault("expected key=value");
+    const std::size_t equals = find_equals();
+    if (equals == std::string::npos) return;
     for (const std::string& plain : plain_paths(trimmed_key(equals))) {
       const auto path = parse_key_path(plain);
       if (!path) {
@@ -87,12 +93,26 @@ class Override {
     }
   }
 
+  std::optional<TextEdit> as_edit() {
+    const std::size_t equals = find_equals();
+    if (equals == std::string::npos) return std::nullopt;
+    const std::optional<toml::table> holder = parse_value(equals);
+    if (!holder) return std::nullopt;
+    const std::string value(without_blanks(std::string_view(text_).substr(equals + 1)));
+    const bool is_bare_text = holder->begin()->second.is_string() && begins_like_a_bare_text(value);
+    return TextEdit{std::string(trimmed_key(equals)), is_bare_text ? in_quotes(value) : value};
+  }
+
  private:
+  /// Position of the sign between key and value; a fault if there is none.
+  [[nodiscard]] std::size_t find_equals() {
+    const std::size_t equals = text_.find('=');
+    if (equals == std::string::npos) fault("expected key=value");
+    return equals;
+  }
+
   [[nodiscard]] std::string_view trimmed_key(std::size_t equals) const {
-    std::string_view key = std::string_view(text_).substr(0, equals);
-    while (!key.empty() && key.front() == ' ') key.remove_prefix(1);
-    while (!key.empty() && key.back() == ' ') key.remove_suffix(1);
-    return key;
+    return without_blanks(std::string_view(text_).substr(0, equals));
   }
 
   /// A table with the value as its only entry. A key of the same length replaces the path, so that positions in the
@@ -240,6 +260,8 @@ void apply_override(toml::table& root, const std::string& text, FaultList& fault
 void apply_number(toml::table& root, const std::string& text, double number, FaultList& faults) {
   Override(text, faults).apply(root, number);
 }
+
+std::optional<TextEdit> edit_of(const std::string& text, FaultList& faults) { return Override(text, faults).as_edit(); }
 
 bool is_override(const SourceLocation& where) noexcept { return where.file.starts_with(k_prefix); }
 

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "scenario/edit.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/scenario.hpp"
 
@@ -35,6 +36,10 @@ void apply_override(toml::table& root, const std::string& text, FaultList& fault
 /// Sets a number in the tree, as apply_override() would from its text, without parsing the text.
 /// @param text  `key=number`
 void apply_number(toml::table& root, const std::string& text, double number, FaultList& faults);
+
+/// The edit of a scenario's text that has the effect of one `key=value` text; none, and a fault, if its value is not
+/// TOML.
+[[nodiscard]] std::optional<TextEdit> edit_of(const std::string& text, FaultList& faults);
 
 /// True if a position is in an override rather than in a file.
 [[nodiscard]] bool is_override(const SourceLocation& where) noexcept;

@@ -152,8 +152,8 @@ TEST(Branches, CurvesWithoutACommonRangeAreAFault) {
 // --- turning points
 
 /// x through the places in equal steps, with Gaussian noise.
-Values through(const Values& places, std::size_t rows, double noise) {
-  std::mt19937 generator(7);
+Values through(const Values& places, std::size_t rows, double noise, unsigned seed = 7) {
+  std::mt19937 generator(seed);
   std::normal_distribution<double> error(0.0, noise > 0.0 ? noise : 1.0);
   Values x{places.front()};
   for (std::size_t p = 1; p < places.size(); ++p) {
@@ -187,7 +187,32 @@ TEST(TurningPoints, AreNotThoseOfNoise) {
     const Values found{x[turns[1]], x[turns[2]], x[turns[3]]};
     const Values expected{1, 0.8, 0.9};
     for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(found[k], expected[k], 5 * noise) << noise;
+    const Values smoothed = turning_values(x, turns);
+    EXPECT_NEAR(smoothed[1], 1.0, 4 * noise) << noise << ": a hold";
+    for (const std::size_t k : {1U, 2U}) EXPECT_NEAR(smoothed[k + 1], expected[k], noise) << noise;
   }
+}
+
+TEST(TurningPoints, OfExactDataAreWhereTheirRowsAre) {
+  const Values x = through({0, 2, 1.9, 2.5, 2.4}, 10, 0.0);
+  const Values values = turning_values(x, turning_points(x));
+  EXPECT_EQ(values, (Values{0, 2, 1.9, 2.5, 2.4}));
+  EXPECT_EQ(noise_in(x), 0.0);
+}
+
+TEST(TurningPoints, LieWhereTheRowsBesideThemLeadNotAtTheLargestNoise) {
+  double sum_smoothed = 0.0;
+  double sum_of_rows = 0.0;
+  constexpr int k_samples = 50;
+  for (unsigned seed = 0; seed < k_samples; ++seed) {
+    const Values x = through({0, 1, 0.9}, 600, 1e-3, seed);
+    const auto turns = turning_points(x);
+    ASSERT_EQ(turns.size(), 3U) << seed;
+    sum_smoothed += turning_values(x, turns)[1] - 1.0;
+    sum_of_rows += x[turns[1]] - 1.0;
+  }
+  EXPECT_NEAR(sum_smoothed / k_samples, 0.0, 2e-4) << "a fifth of the noise";
+  EXPECT_GT(sum_of_rows / k_samples, 7e-4);
 }
 
 TEST(TurningPoints, OfManyEqualCyclesAreAllOfThem) {

@@ -10,6 +10,7 @@
 
 #include "scenario/numbers.hpp"
 #include "scenario/scenario.hpp"
+#include "support/refusal.hpp"
 #include "support/scenario_texts.hpp"
 
 namespace monograin::edit_test {
@@ -54,6 +55,22 @@ TEST(Edit, RefusesATableWithoutAHeader) {
   EXPECT_THROW(static_cast<void>(with_values("material = { nu = 1 }\n", {{"material.E", "2"}})), std::runtime_error);
   EXPECT_THROW(static_cast<void>(with_values("x = 1\n", {{"material.E", "2"}})), std::runtime_error);
   EXPECT_EQ(with_values("material = { nu = 1 }\n", {{"material.nu", "2"}}), "material = { nu = 2 }\n");
+}
+
+TEST(Edit, WritesAnOverrideAsTheFileWouldHaveIt) {
+  for (const auto& [key_and_value, expected] :
+       {std::pair{"material.yield_stress = 40 MPa", "yield_stress = \"40 MPa\""},
+        std::pair{"material.yield_stress=4e7", "yield_stress = 4e7"},
+        std::pair{"loading.configuration='die'", "configuration = 'die'"}}) {
+    EXPECT_TRUE(contains(with_override(k_scenario, key_and_value), expected)) << key_and_value;
+  }
+  EXPECT_EQ(with_override("title = 'x'\n", "title=new"), "title = \"new\"\n");
+}
+
+TEST(Edit, RefusesAnOverrideThatHasNoPlace) {
+  for (const char* key_and_value : {"title=new", "loading.steps[0]={}", "loading", "loading.angle='"}) {
+    EXPECT_THROW(static_cast<void>(with_override(k_scenario, key_and_value)), std::runtime_error) << key_and_value;
+  }
 }
 
 TEST(Edit, ATableOfALargerDocumentIsAScenarioOfItsOwn) {

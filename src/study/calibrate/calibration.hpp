@@ -152,7 +152,8 @@ inline constexpr double k_most_missing = 0.1;
 /// @return none if the scenario cannot follow the data with any of the parameters tried
 [[nodiscard]] std::optional<std::vector<double>> best_response(const Calibration& calibration);
 
-/// The scenario's text with the fitted numbers, to 17 digits, and its own loading; the rest as its author wrote it.
+/// The scenario's text with the fitted numbers, to 17 digits, the overrides that all curves share, and its own loading;
+/// the rest as its author wrote it.
 [[nodiscard]] std::string fitted_scenario_text(const Calibration& calibration, const CalibrationResult& result);
 
 /// Parameters, intervals, correlations and residuals as text for the terminal.

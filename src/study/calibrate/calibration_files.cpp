@@ -182,6 +182,27 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
 /// Name of a table that an option refers to. It lies beside the fitted scenario, under the option's name.
 std::string table_name(const std::string& option) { return option + ".csv"; }
 
+/// True if every curve has an override.
+bool is_shared(const Calibration& calibration, const std::string& key_and_value) {
+  return std::ranges::all_of(calibration.curves, [&](const MeasuredCurve& curve) {
+    return std::ranges::find(curve.overrides, key_and_value) != curve.overrides.end();
+  });
+}
+
+/// The scenario with the overrides that all curves share. Those for which its text has no place are listed in `head`.
+std::string shared_scenario_text(const Calibration& calibration, std::string& head) {
+  std::string text = calibration.scenario_text;
+  for (const std::string& key_and_value : calibration.curves.front().overrides) {
+    if (!is_shared(calibration, key_and_value)) continue;
+    try {
+      text = with_override(text, key_and_value);
+    } catch (const std::runtime_error&) {
+      head += fmt::format("# The fit holds with --set '{}'\n", on_one_line(key_and_value));
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string fitted_scenario_text(const Calibration& calibration, const CalibrationResult& result) {
@@ -202,7 +223,8 @@ std::string fitted_scenario_text(const Calibration& calibration, const Calibrati
   for (const auto& [option, curve] : calibration.scenario.curves) {
     edits.push_back({calibration.scenario.model + '.' + option, '"' + table_name(option) + '"'});
   }
-  return head + with_values(calibration.scenario_text, edits);
+  const std::string text = shared_scenario_text(calibration, head);
+  return head + with_values(text, edits);
 }
 
 Table fit_table(const Calibration& calibration, const CalibrationResult& result) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "history/branches.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/response.hpp"
 
@@ -81,6 +82,20 @@ void note_table_ends(const Calibration& calibration, const MeasuredCurve& curve,
       curve.machine.forces.back(), largest));
 }
 
+/// Notes noise of x, and data that begin with unloading.
+void note_path(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x, Notes& notes) {
+  const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
+  if (const double noise = noise_in(x); noise > 0.0) {
+    notes.push_back(fmt::format(
+        "{} goes back and forth by {:.2g} {}: that is noise, and turns nothing; turning points lie where the rows "
+        "beside "
+        "them lead. Intervals do not contain the error of these points, and are too narrow where unloading is steep",
+        calibration.x.observable, noise, calibration.x.si));
+  } else if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
+    notes.push_back("the data begin with unloading; the particle is loaded to their first row from rest");
+  }
+}
+
 /// Notes pairs of parameters of which the data determine little more than a combination.
 void note_correlations(const Calibration& calibration, const CalibrationResult& result, Notes& notes) {
   for (std::size_t i = 0; i < calibration.free.size(); ++i) {
@@ -141,10 +156,7 @@ std::vector<std::string> notes_of(const Calibration& calibration, const Calibrat
   for (const MeasuredCurve& curve : calibration.curves) {
     const std::vector<double> x = x_of(calibration, curve);
     note_table_ends(calibration, curve, x, notes);
-    const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
-    if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
-      note("the data begin with unloading; the particle is loaded to their first row from rest");
-    }
+    note_path(calibration, curve, x, notes);
   }
   note_correlations(calibration, result, notes);
   note_residual_tests(result, notes);

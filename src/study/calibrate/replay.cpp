@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "catalogue.hpp"
 #include "engine/drive.hpp"
+#include "history/branches.hpp"
 #include "scenario/numbers.hpp"
 #include "system/resolution.hpp"
 
@@ -74,25 +76,50 @@ class ColumnSink final : public HistorySink {
 
 DataProgram program_through(std::span<const double> values, Step::Kind kind, double start) {
   DataProgram program;
+  program.rows.resize(values.size());
+  program.values.assign(values.begin(), values.end());
   double largest = std::abs(start);
   for (const double value : values) largest = std::max(largest, std::abs(value));
+  const double same = k_same_value * largest;
 
-  std::vector<double> passed{start};  // values at the instants, beginning with the start's
-  for (const double value : values) {
-    if (std::abs(value - passed.back()) > k_same_value * largest) passed.push_back(value);
-    program.rows.push_back(passed.size() - 1);
-  }
-  for (std::size_t first = 0; first + 1 < passed.size();) {
-    const auto rises = [&](std::size_t k) { return passed[k + 1] > passed[k]; };
-    std::size_t last = first + 1;
-    while (last + 1 < passed.size() && rises(last) == rises(first)) ++last;
-    const auto begin = static_cast<double>(program.steps.size());
-    for (std::size_t k = first + 1; k <= last; ++k) {
-      program.times.push_back(begin + (passed[k] - passed[first]) / (passed[last] - passed[first]));
+  double at = start;
+  const auto go_to = [&](double target) {
+    program.steps.push_back({.kind = kind, .target = target, .duration = 1.0, .rate = {}, .until = {}, .where = {}});
+    at = target;
+  };
+  const std::vector<std::size_t> turns = turning_points(values);
+  const std::vector<double> turning = turning_values(values, turns);
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    if (k == 0 && turns.size() > 1) continue;
+    const std::size_t from = k == 0 ? 0 : turns[k - 1];
+    // The rows of a branch, in the order in which it passes their values. A turning point ends a branch.
+    std::vector<std::size_t> branch(turns[k] + 1 - (k < 2 ? 0 : from + 1));
+    std::iota(branch.begin(), branch.end(), turns[k] + 1 - branch.size());
+    const bool rises = turning[k] > (k == 0 ? start : turning[k - 1]);
+    const auto is_before = [&](double a, double b) { return rises ? a < b : a > b; };
+    for (const std::size_t row : branch) {  // noise of the rows next to a turn goes beyond it
+      double& value = program.values[row];
+      if (k > 1 && is_before(value, turning[k - 1])) value = turning[k - 1];
+      if (k + 1 < turns.size() && is_before(turning[k], value)) value = turning[k];
     }
-    program.steps.push_back(
-        {.kind = kind, .target = passed[last], .duration = 1.0, .rate = {}, .until = {}, .where = {}});
-    first = last;
+    std::ranges::stable_sort(branch, is_before, [&](std::size_t row) { return program.values[row]; });
+    // Where the first branch begins behind the start, because of noise or after a load that is not in the data.
+    if (const double first = program.values[branch.front()]; is_before(first, at) && std::abs(first - at) > same) {
+      go_to(first);
+      program.times.push_back(static_cast<double>(program.steps.size()));
+    }
+    const double begin = at;
+    const double end = k + 1 < turns.size() ? turning[k] : program.values[branch.back()];
+    const auto steps_before = static_cast<double>(program.steps.size());
+    double passed = begin;
+    for (const std::size_t row : branch) {
+      if (std::abs(program.values[row] - passed) > same) {
+        passed = program.values[row];
+        program.times.push_back(steps_before + (passed - begin) / (end - begin));
+      }
+      program.rows[row] = program.times.size();
+    }
+    if (std::abs(end - begin) > same) go_to(end);
   }
   return program;
 }
@@ -139,6 +166,7 @@ void Replay::follow(std::vector<double> values) {
   scenario_.loading.steps = std::move(program.steps);
   scenario_.output.times = std::move(program.times);
   rows_ = std::move(program.rows);
+  prescribed_ = std::move(program.values);
   resolution_ = 0.0;
   // Prescribed quantities follow the program exactly, except a force on a contact that has been lost.
   for (const double value : values_) resolution_ = std::max(resolution_, k_same_force * std::abs(value));
@@ -191,8 +219,8 @@ bool Replay::run(std::span<double> response) {
     failed_at_ = i;
     if (rows_[i] >= seen_.size()) return false;
     const auto [driven, watched] = seen_[rows_[i]];
-    if (std::abs(driven - values_[i]) > resolution_) {
-      problem_ = fmt::format("{} is {:.6g} where {:.6g} is prescribed", columns_.driven, driven, values_[i]);
+    if (std::abs(driven - prescribed_[i]) > resolution_) {
+      problem_ = fmt::format("{} is {:.6g} where {:.6g} is prescribed", columns_.driven, driven, prescribed_[i]);
       return false;
     }
     if (!std::isfinite(watched)) {

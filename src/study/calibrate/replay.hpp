@@ -13,14 +13,17 @@
 
 namespace monograin {
 
-/// A program that passes given values, with one step of one second for each stretch in which they rise or fall.
+/// A program that passes given values, with one step of one second for each branch on which they rise or fall.
 struct DataProgram {
   std::vector<Step> steps;
   std::vector<double> times;      ///< [s], ascending: instants at which the program passes the values, after its start
   std::vector<std::size_t> rows;  ///< for each value the index of its instant: 0 for the start, k for times[k - 1]
+  std::vector<double> values;     ///< that the program passes; where noise goes beyond a turn, the value of the turn
 };
 
-/// Makes a program from values. Consecutive values without a change (1e-12 relative to the largest) share an instant.
+/// Makes a program from values, with a branch between any two of their turning_points(). Noise does not turn a branch:
+/// it passes its values in rising or falling order, whatever their order in the data, and turns at turning_values().
+/// Values of a branch that differ by less than 1e-12 of the largest share an instant.
 /// @param kind   kind of the steps: a ramp
 /// @param start  value of the quantity before the first step
 [[nodiscard]] DataProgram program_through(std::span<const double> values, Step::Kind kind, double start);
@@ -89,6 +92,7 @@ class Replay {
   std::string integrator_;
   ReplayColumns columns_;
   std::vector<double> values_;
+  std::vector<double> prescribed_;           ///< values that the program passes
   double resolution_ = 0.0;                  ///< of the driven column
   std::vector<std::size_t> rows_;            ///< for each value the index of its instant
   std::vector<std::array<double, 2>> seen_;  ///< driven and observed column, instant by instant

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 #include "elastic/hertz.hpp"
 #include "history/run.hpp"
 #include "history/table.hpp"
+#include "support/refusal.hpp"
 #include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
@@ -703,6 +705,35 @@ TEST(DataProgram, HasAStepForEachStretchAndAnInstantForEachValue) {
   EXPECT_EQ(program.rows, (std::vector<std::size_t>{0, 1, 2, 2, 3, 4}));
 }
 
+TEST(DataProgram, TakesNoiseForNoTurnAndPassesItsValuesInOrder) {
+  std::mt19937 generator(2);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  std::vector<double> x{0.0};
+  for (int k = 1; k <= 600; ++k) x.push_back((k <= 400 ? 0.01 * k : 8.0 - 0.01 * k) + noise(generator));
+  x[1] = -0.03;
+  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0);
+  ASSERT_EQ(program.steps.size(), 3U) << "behind the start, up, and down";
+  const double top = program.steps[1].target;
+  EXPECT_NEAR(top, 4.0, 0.02);
+  EXPECT_LT(program.steps[0].target, 0.0);
+  EXPECT_TRUE(std::ranges::is_sorted(program.times));
+  for (std::size_t k = 1; k < x.size(); ++k) {
+    EXPECT_EQ(program.values[k], std::min(x[k], top)) << k;
+    const double time = program.times[program.rows[k] - 1];
+    const Step& step = program.steps[static_cast<std::size_t>(std::ceil(time)) - 1];
+    const double from = time > 2.0 ? top : (time > 1.0 ? program.steps[0].target : 0.0);
+    EXPECT_NEAR(from + (time - std::ceil(time) + 1.0) * (step.target - from), program.values[k], 1e-12) << k;
+  }
+}
+
+TEST(DataProgram, GoesToWhereDataOfAnUnloadingBegin) {
+  const DataProgram program = program_through(std::vector{5.0, 4.0, 3.0}, Step::Kind::displacement, 0.0);
+  ASSERT_EQ(program.steps.size(), 2U);
+  EXPECT_EQ(program.steps[0].target, 5.0);
+  EXPECT_EQ(program.times, (std::vector{1.0, 1.5, 2.0}));
+  EXPECT_EQ(program.rows, (std::vector<std::size_t>{1, 2, 3}));
+}
+
 // --- what is written
 
 TEST_F(CalibrationTest, TheFittedScenarioIsTheOldOneWithTheNumbersPutIn) {
@@ -714,6 +745,25 @@ TEST_F(CalibrationTest, TheFittedScenarioIsTheOldOneWithTheNumbersPutIn) {
   EXPECT_EQ(fitted.material.at("youngs_modulus"), result.solution.parameters[0]);
   EXPECT_EQ(fitted.loading.steps.size(), 1U);
   EXPECT_EQ(fitted.loading.steps[0].target, 0.01 * k_radius);
+}
+
+TEST_F(CalibrationTest, TheFittedScenarioHasTheOverridesThatAllCurvesShare) {
+  write("d.csv", csv_of(noisy_hertz(), "displacement[m],force[N],w"));
+  const auto fitted_with = [&](const std::string& first, const std::string& second) {
+    const std::string data = replaced(k_calibration, "[data]", "[[data]]");
+    const std::string free = data.substr(data.find("[free]"));
+    const std::string curve = data.substr(data.find("[[data]]"), data.find("[free]") - data.find("[[data]]"));
+    write("c.toml", data.substr(0, data.find("[[data]]")) + curve + first + curve + second + free);
+    const Calibration calibration = read();
+    return fitted_scenario_text(calibration, calibrate(calibration));
+  };
+  const std::string set = "set = [\"material.poisson_ratio=0.2\", \"title=softer\"]\n";
+  const CheckedScenario both = parse_scenario(fitted_with(set, set), "fitted.toml");
+  EXPECT_EQ(both.material.at("poisson_ratio"), 0.2);
+  const CheckedScenario one = parse_scenario(fitted_with(set, ""), "fitted.toml");
+  EXPECT_EQ(one.material.at("poisson_ratio"), k_poisson);
+  // The text has no place for a title.
+  EXPECT_TRUE(contains(fitted_with(set, set), "# The fit holds with --set 'title=softer'\n"));
 }
 
 std::string written(const Calibration& calibration, const CalibrationResult& result, const fs::path& target) {

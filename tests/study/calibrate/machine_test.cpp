@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "elastic/hertz.hpp"
+#include "history/run.hpp"
 #include "history/table.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "support/scenario_texts.hpp"
@@ -355,6 +357,25 @@ TEST_F(MachineCalibration, NoiseOfTheForcesDoesNotBiasTheModulus) {
   const double three_errors = 3.0 * std::sqrt(squares / (n - 1.0) / n);
   EXPECT_NEAR(mean, k_hertz_modulus, three_errors);
   EXPECT_LT(three_errors, 0.5 * 0.39 * k_hertz_modulus) << "half the bias of measured forces";
+}
+
+TEST_F(MachineCalibration, NoiseOfTheDisplacementsIsNoUnloading) {
+  const monograin::Run run =
+      run_scenario(read_scenario(MONOGRAIN_SOURCE_DIR "/scenarios/uniaxial.toml", {"output.points=500"}));
+  const std::vector<double> displacements = run.record.history.column("axial.displacement");
+  const std::vector<double> forces = run.record.history.column("axial.force");
+  const double farthest = *std::ranges::max_element(displacements);
+  std::mt19937_64 generator(4);
+  std::normal_distribution<double> noise(0.0, 1e-3 * farthest);
+  std::string data = "displacement[m],force[N]\n";
+  for (std::size_t row = 0; row < forces.size(); ++row)
+    data += fmt::format("{:.17g},{:.17g}\n", displacements[row] + (row > 0 ? noise(generator) : 0.0), forces[row]);
+  write_text(folder() / "noisy.csv", data);
+  const CalibrationResult result =
+      calibrate(read("noisy.csv", "x = \"displacement[m]\"\ny = \"force[N]\"\nweights = \"absolute\""));
+  EXPECT_EQ(result.program_steps, run.scenario.loading.steps.size());
+  EXPECT_NEAR(result.solution.parameters[0] / run.scenario.material.at("youngs_modulus"), 1.0, 0.01);
+  EXPECT_NEAR(result.solution.parameters[1] / run.scenario.material.at("yield_stress"), 1.0, 0.005);
 }
 
 TEST_F(MachineCalibration, AMachineUnderForceControlAddsToTheDisplacement) {
