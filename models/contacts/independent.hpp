@@ -185,7 +185,9 @@ class IndependentContacts final : public HybridSystem {
     if constexpr (k_has_work) {
       return sum([&](std::size_t i) {
         if (!contacts_[i].touches()) return 0.0;
-        return law_.work(contacts_[i].branch(), displacement(i, xi, y));
+        const Branch& branch = contacts_[i].branch();
+        // A centre that leaves a contact in no time takes it beyond its opening before it is lost.
+        return law_.work(branch, std::max(displacement(i, xi, y), law_.opening(branch)));
       });
     } else {
       return std::nullopt;

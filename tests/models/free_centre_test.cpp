@@ -178,6 +178,39 @@ TEST_P(FreeCentreOfIndependentContacts, DoesTheSameWorkByEveryFormAfterAWallHasL
   }
 }
 
+TEST_P(FreeCentreOfIndependentContacts, DoesNoWorkWhereAForceClosesAGapInNoTime) {
+  // The force takes the particle from wall c to b and back onto c, before it has grown to anything.
+  const double depth = GetParam().depth;
+  const double force = run_pair({ramp(depth)}).last("a.force");
+  const std::vector<WallSpec> walls = {wall("a", {0, 0, 1}, {force_ramp(0.5 * force)}),
+                                       wall("b", {-1, 0, -1}, {}, 0.4 * depth),
+                                       wall("c", {1, 0, 0}, path({0.8 * depth}))};
+  const TestRun direct = run_in(walls, "equilibrium", "direct");
+  const TestRun integrated = run_in(walls, "equilibrium", "cvode-adams");
+  ASSERT_EQ(direct.record.status, RunStatus::complete) << direct.record.message;
+  ASSERT_EQ(integrated.record.status, RunStatus::complete) << integrated.record.message;
+  EXPECT_NEAR(direct.last("work"), integrated.last("work"), 1e-6 * direct.last("work"));
+}
+
+TEST_P(FreeCentreOfIndependentContacts, MeetsAllWallsOntoWhichAForceTakesItInNoTime) {
+  // Four walls that leave gaps; they close the cell by displacements in any order, and by one force.
+  const double depth = GetParam().depth;
+  const double force = run_pair({ramp(depth)}).last("a.force");
+  const double gap = 0.2 * depth;
+  for (const double first : {1.0, 0.64, 1.4087, 0.9}) {
+    const std::vector<WallSpec> walls = {wall("a", k_tetrahedron[0], path({1.41 * depth * first}), gap),
+                                         wall("b", k_tetrahedron[1], path({0.926 * depth}), gap),
+                                         wall("c", k_tetrahedron[2], {force_ramp(0.3 * force)}, gap),
+                                         wall("d", k_tetrahedron[3], {}, gap)};
+    for (const char* const integrator : {"direct", "cvode-bdf", "odeint-dopri5"}) {
+      const TestRun pressed = run_in(walls, "equilibrium", integrator);
+      ASSERT_EQ(pressed.record.status, RunStatus::complete) << integrator << ": " << pressed.record.message;
+      for (const char* const name : {"a.force", "b.force", "c.force", "d.force"})
+        EXPECT_NEAR(pressed.last(name), 0.3 * force, 1e-6 * force) << name << ", " << integrator << ", " << first;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(OfEveryLaw, FreeCentreOfIndependentContacts,
                          testing::ValuesIn(particles_of({"hertz", "similarity", "compressible"})),
                          [](const auto& tested) { return tested.param.name; });
