@@ -28,8 +28,13 @@ struct Kind {
   std::string_view name;
   int direction;
 };
-constexpr std::array<Kind, 6> k_kinds{
-    {{"contact-made", 1}, {"contact-lost", -1}, {"yield", 1}, {"load-reversal", -1}, {"limit", -1}, {"limit", -1}}};
+constexpr std::array<Kind, 7> k_kinds{{{"contact-made", 1},
+                                       {"contact-lost", -1},
+                                       {"yield", 1},
+                                       {"load-reversal", -1},
+                                       {"limit", -1},
+                                       {"limit", -1},
+                                       {"limit", -1}}};
 
 /// Elastic displacement of a contact at the first trial instant ahead at which it is clearly open or closed, or else 0.
 /// Trials begin with the motion at this instant.
@@ -95,6 +100,8 @@ double value_of(const Guard& guard, const Particle& p, const Motion& motion, dou
       return dent_rate / (std::abs(dent_rate) + std::abs(c.drive.rate()) + p.depth());
     case k_fold:
       return motion.margin() - k_least_margin;
+    case k_away:
+      return p.centre.room(xi, p.position());
     default:
       return k_most_coverage - p.coverage().Om;
   }
@@ -124,6 +131,7 @@ void GuardSet::arm(const Particle& p) {
   }
   add(k_fold, -1);
   add(k_coverage, -1);
+  if (p.layout().directions > 0 && std::ranges::any_of(p.classes, &ClassState::takes_force)) add(k_away, -1);
 }
 
 void GuardSet::values(const Particle& p, const Motion& motion, double xi, std::span<double> values) const {
@@ -140,6 +148,7 @@ std::optional<DomainEnd> GuardSet::limit_met(const Particle& p, const Motion& mo
 DomainEnd end_at(const Guard& guard, const Particle& p, double xi) {
   const Event event{guard.name};
   if (guard.kind == k_coverage) return {event, {Limit::surface_covered, -1, "coverage", p.coverage().Om}};
+  if (guard.kind == k_away) return {event, {.limit = Limit::centre_driven_away}};
   double largest = 0.0;
   for (const ClassState& c : p.classes) largest = std::max(largest, c.position(xi));
   return {event, {Limit::applicability, -1, "largest displacement/R0", largest}};

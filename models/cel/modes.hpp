@@ -11,7 +11,7 @@
 
 namespace monograin::cel {
 
-enum GuardKind : int { k_made, k_lost, k_yield, k_reversal, k_fold, k_coverage };
+enum GuardKind : int { k_made, k_lost, k_yield, k_reversal, k_fold, k_coverage, k_away };
 
 /// Set of the guards that are alive until the next transition or the end of the step.
 class GuardSet {
@@ -29,7 +29,7 @@ class GuardSet {
   std::vector<Guard> list_;
 };
 
-/// End of a run at a limit, whose guard is k_fold or k_coverage.
+/// End of a run at a limit, whose guard is k_fold or a later kind.
 [[nodiscard]] DomainEnd end_at(const Guard& guard, const Particle& p, double xi);
 
 /// Decides the mode from here on, and logs contacts that are made or lost, or begin or stop to flow.

@@ -9,9 +9,6 @@
 namespace monograin::cel {
 namespace {
 
-/// Displacement of a free centre (over R0) from which on forces drive it away: only the weak spring holds it there.
-constexpr double k_farthest = 10.0;
-
 constexpr int k_most_corrections = 60;
 constexpr int k_most_halvings = 40;
 constexpr int k_most_polishings = 4;
@@ -94,8 +91,7 @@ void Newton::solve(Particle& p, double xi, std::span<double> y) {
   }
   p.evaluate(y);
   const bool takes_force = std::ranges::any_of(p.classes, &ClassState::takes_force);
-  if (takes_force && p.centre.stretch(xi, p.position()).cwiseAbs().maxCoeff() > k_farthest)
-    throw DomainError(Limit::centre_driven_away);
+  if (takes_force && p.centre.room(xi, p.position()) < 0.0) throw DomainError(Limit::centre_driven_away);
   if (!(now <= k_solved * std::max(largest, p.material().Y))) throw DomainError(Limit::applicability);
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -154,6 +155,36 @@ TEST_P(FreeCentre, IsCarriedAlongByAMotionOfAllWalls) {
       EXPECT_NEAR(moved.last(name), still.last(name), 1e-6 * force) << name << " of " << normals.size();
     }
   }
+}
+
+TEST_P(FreeCentre, StaysInTheMiddleOfAlikeWallsWhateverTheirDirection) {
+  const double depth = GetParam().depth;
+  const Eigen::Matrix3d rotation = Eigen::AngleAxisd(0.9, Eigen::Vector3d(2, -1, 3).normalized()).toRotationMatrix();
+  const auto cell = [&](const Eigen::Matrix3d& turn, const std::string& centre) {
+    std::vector<WallSpec> walls;
+    for (int k = 0; k < 6; ++k) {
+      const Eigen::Vector3d normal = (k < 3 ? 1.0 : -1.0) * turn.col(k % 3);
+      walls.push_back(wall(std::string(1, static_cast<char>('a' + k)), normal, path({depth, 0.9 * depth})));
+    }
+    return run_in(walls, centre, "auto");
+  };
+  const TestRun turned = cell(rotation, "equilibrium");
+  ASSERT_EQ(turned.record.status, RunStatus::complete) << turned.record.message;
+  EXPECT_NEAR(turned.last("a.force"), cell(Eigen::Matrix3d::Identity(), "fixed").last("a.force"),
+              1e-9 * turned.last("a.force"));
+}
+
+TEST_P(FreeCentre, IsDrivenAwayByAForceThatNothingBears) {
+  const double depth = GetParam().depth;
+  const double force = run_pair({ramp(depth)}).last("a.force");
+  const auto across = [&](const std::string& name, double direction, double share) {
+    return wall(name, {direction, 0, 0}, {ramp(0.4 * depth), force_ramp(share * force)});
+  };
+  const TestRun driven = run_in({wall("a", {0, 0, 1}, path({depth, 1.2 * depth})), wall("b", {0, 0, -1}),
+                                 across("c", -1.0, 0.2), across("d", 1.0, 0.1)},
+                                "equilibrium", "auto");
+  EXPECT_EQ(driven.record.status, RunStatus::stopped);
+  EXPECT_EQ(driven.record.limit, Limit::centre_driven_away) << driven.record.message;
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEveryLaw, FreeCentre, testing::ValuesIn(k_particles),

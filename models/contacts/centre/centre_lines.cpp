@@ -9,7 +9,10 @@ CentreLines::CentreLines(std::span<const ContactClass> classes, bool is_free) {
   for (std::size_t i = 0; i < classes.size(); ++i) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& normal : classes[i].normals) mean += normal;
-    means.col(static_cast<Eigen::Index>(i)) = mean / classes[i].multiplicity();
+    mean /= classes[i].multiplicity();
+    // The sum of normals that balance is round-off, where they do not lie along the axes.
+    if (mean.norm() <= k_no_direction) mean.setZero();
+    means.col(static_cast<Eigen::Index>(i)) = mean;
   }
   if (is_free) {
     Eigen::ColPivHouseholderQR<Eigen::Matrix3Xd> qr(means);
