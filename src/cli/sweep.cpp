@@ -62,6 +62,10 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, con
   if (outcome.runs_now > 0) {
     text += fmt::format(" in {:.3g} s ({:.4g} runs/s)", seconds, static_cast<double>(outcome.runs_now) / seconds);
   }
+  if (outcome.runs_ended_early > 0) {
+    text +=
+        fmt::format(", {} of them refused, stopped or failed (columns status and reason)", outcome.runs_ended_early);
+  }
   if (outcome.runs_before > 0) text += fmt::format(", {} were there already", outcome.runs_before);
   text += outcome.runs_missing > 0
               ? fmt::format("; {} of {} are left to other shards", outcome.runs_missing, sweep.runs.size())

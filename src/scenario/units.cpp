@@ -19,12 +19,11 @@ constexpr std::array k_lengths{
     Unit{"m", 1.0},   Unit{"cm", 1e-2}, Unit{"mm", 1e-3}, Unit{"um", 1e-6},
     Unit{"µm", 1e-6}, Unit{"μm", 1e-6}, Unit{"nm", 1e-9}, Unit{"km", 1e3},
 };
-constexpr std::array k_stresses{Unit{"Pa", 1.0}, Unit{"kPa", 1e3}, Unit{"MPa", 1e6}, Unit{"GPa", 1e9}};
+constexpr std::array k_stresses{Unit{"Pa", 1.0}, Unit{"kPa", 1e3}, Unit{"MPa", 1e6}, Unit{"GPa", 1e9},
+                                Unit{"N/mm^2", 1e6}};
 constexpr std::array k_surface_energies{
-    Unit{"J/m^2", 1.0},
-    Unit{"mJ/m^2", 1e-3},
-    Unit{"N/m", 1.0},
-    Unit{"mN/m", 1e-3},
+    Unit{"J/m^2", 1.0},  Unit{"J/m²", 1.0}, Unit{"mJ/m^2", 1e-3},
+    Unit{"mJ/m²", 1e-3}, Unit{"N/m", 1.0},  Unit{"mN/m", 1e-3},
 };
 constexpr std::array k_forces{
     Unit{"N", 1.0},   Unit{"kN", 1e3},  Unit{"MN", 1e6},  Unit{"mN", 1e-3},
@@ -35,8 +34,8 @@ constexpr std::array k_times{
     Unit{"μs", 1e-6}, Unit{"ns", 1e-9}, Unit{"min", 60.0}, Unit{"h", 3600.0},
 };
 constexpr std::array k_velocities{
-    Unit{"m/s", 1.0},   Unit{"cm/s", 1e-2}, Unit{"mm/s", 1e-3}, Unit{"um/s", 1e-6},
-    Unit{"µm/s", 1e-6}, Unit{"μm/s", 1e-6}, Unit{"nm/s", 1e-9}, Unit{"km/s", 1e3},
+    Unit{"m/s", 1.0},   Unit{"cm/s", 1e-2}, Unit{"mm/s", 1e-3}, Unit{"um/s", 1e-6},          Unit{"µm/s", 1e-6},
+    Unit{"μm/s", 1e-6}, Unit{"nm/s", 1e-9}, Unit{"km/s", 1e3},  Unit{"mm/min", 1e-3 / 60.0},
 };
 constexpr std::array k_force_rates{
     Unit{"N/s", 1.0},   Unit{"kN/s", 1e3},  Unit{"MN/s", 1e6},  Unit{"mN/s", 1e-3},
@@ -106,6 +105,7 @@ std::optional<double> unit_factor(std::string_view symbol, const DimensionInfo& 
 std::string unknown_unit(std::string_view symbol, const DimensionInfo& info) {
   if (symbol.empty()) return with_expectation("the unit is missing", info);
   if (symbol == info.relative) return with_expectation("the initial radius cannot be given in itself", info);
+  if (symbol.starts_with(',')) return with_expectation("a decimal comma", info) + ", with a decimal point";
   return with_expectation(fmt::format("unknown unit '{}'", shown(symbol)), info);
 }
 

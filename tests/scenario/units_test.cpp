@@ -43,6 +43,9 @@ INSTANTIATE_TEST_SUITE_P(
         UnitRow{"leading_point", ".5 m", Dimension::length, 0.5}, UnitRow{"pascal", "3 Pa", Dimension::stress, 3.0},
         UnitRow{"kilopascal", "3 kPa", Dimension::stress, 3e3}, UnitRow{"megapascal", "50 MPa", Dimension::stress, 5e7},
         UnitRow{"gigapascal", "1 GPa", Dimension::stress, 1e9},
+        UnitRow{"newton_per_square_millimetre", "50 N/mm^2", Dimension::stress, 5e7},
+        UnitRow{"superscript", "0.2 J/m²", Dimension::surface_energy, 0.2},
+        UnitRow{"crosshead_speed", "3 mm/min", Dimension::velocity, 5e-5},
         UnitRow{"surface_energy", "2 mJ/m^2", Dimension::surface_energy, 2e-3},
         UnitRow{"surface_tension", "2 mN/m", Dimension::surface_energy, 2e-3},
         UnitRow{"newton", "1 N", Dimension::force, 1.0}, UnitRow{"kilonewton", "1 kN", Dimension::force, 1e3},
@@ -75,6 +78,12 @@ TEST(Units, InitialRadiusIsRefusedWhereItIsBeingDefined) {
   const ParsedQuantity quantity = parse_quantity("1 R0", Dimension::length, std::nullopt);
   EXPECT_FALSE(quantity.value);
   EXPECT_NE(quantity.problem.find("cannot be given in itself"), std::string::npos) << quantity.problem;
+}
+
+TEST(Units, NameADecimalComma) {
+  const ParsedQuantity quantity = parse_quantity("1,2 GPa", Dimension::stress, std::nullopt);
+  EXPECT_FALSE(quantity.value);
+  EXPECT_EQ(quantity.problem, "a decimal comma; expected a stress, for example \"50 MPa\", with a decimal point");
 }
 
 struct DecimalComma : std::numpunct<char> {

@@ -306,8 +306,9 @@ class Rows {
   std::vector<Place> places_;  ///< of every run
 };
 
-void run_all(const Sweep& sweep, const SweepOptions& options, const std::vector<std::size_t>& runs,
-             SweepJournal& journal) {
+/// @return number of runs that were refused, stopped or failed
+std::size_t run_all(const Sweep& sweep, const SweepOptions& options, const std::vector<std::size_t>& runs,
+                    SweepJournal& journal) {
   const fs::path histories = sweep.keeps_histories ? options.folder / "histories" : fs::path();
   if (!histories.empty()) fs::create_directories(histories);
   const LeftOut left_out = not_needed_by(sweep.columns);
@@ -315,12 +316,15 @@ void run_all(const Sweep& sweep, const SweepOptions& options, const std::vector<
   std::vector<Layout> layouts(threads);
   std::mutex mutex;
   std::size_t done = 0;
+  std::size_t ended_early = 0;
   for_each_index(runs.size(), threads, [&](std::size_t i, std::size_t thread) {
     const Outcome outcome = run_one(sweep, runs[i], histories, left_out, layouts[thread]);
     const std::scoped_lock lock(mutex);
     journal.append(outcome.row, outcome.columns);
+    if (outcome.row.status != to_string(RunStatus::complete)) ++ended_early;
     if (options.progress) options.progress(++done, runs.size());
   });
+  return ended_early;
 }
 
 }  // namespace
@@ -337,7 +341,7 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
     for (std::size_t run = options.shard.index - 1; run < sweep.runs.size(); run += options.shard.count) {
       if (!rows.has(run)) runs.push_back(run);
     }
-    run_all(sweep, options, runs, journal);
+    outcome.runs_ended_early = run_all(sweep, options, runs, journal);
     outcome.runs_now = runs.size();
   }
   const FolderLock lock(options.folder);

@@ -25,9 +25,10 @@ struct SweepOptions {
 
 /// Progress of a sweep.
 struct SweepOutcome {
-  std::size_t runs_before = 0;   ///< runs of the whole sweep that were finished before
-  std::size_t runs_now = 0;      ///< done by this call
-  std::size_t runs_missing = 0;  ///< left to other shards; 0: results.csv is complete
+  std::size_t runs_before = 0;       ///< runs of the whole sweep that were finished before
+  std::size_t runs_now = 0;          ///< done by this call
+  std::size_t runs_ended_early = 0;  ///< of those done by this call: refused, stopped or failed
+  std::size_t runs_missing = 0;      ///< left to other shards; 0: results.csv is complete
 };
 
 /// Runs the missing runs of a sweep, or of its shard, and writes results.csv once all runs of the sweep are finished.

@@ -443,6 +443,19 @@ TEST_F(SweepFiles, WhatCannotBeRunIsARowWithTheReason) {
   }
 }
 
+TEST_F(SweepFiles, TheOutcomeCountsRunsThatEndedEarly) {
+  write("small.toml", std::string(k_scenario).replace(std::string(k_scenario).find("0.1 R0"), 6, "0.4 R0"));
+  const Sweep sweep = read(k_grid);
+  const SweepOutcome outcome = run_sweep(sweep, {.folder = path("out"), .threads = 2, .shard = {}, .progress = {}});
+  const Table table = read_csv(path("out") / "results.csv");
+  std::size_t complete = 0;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (table.word(row, *table.find("status")) == "complete") ++complete;
+  }
+  EXPECT_GE(outcome.runs_ended_early, 4U) << "three refused ones, and a stopped one";
+  EXPECT_EQ(outcome.runs_now, complete + outcome.runs_ended_early);
+}
+
 TEST_F(SweepFiles, TheResultsDoNotDependOnTheNumberOfThreads) {
   const Sweep sweep = read(k_grid);
   const std::string one = results(sweep, "one", 1);

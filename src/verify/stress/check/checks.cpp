@@ -323,7 +323,13 @@ class SceneCheck {
     const CheckedScenario copy = carried(scenario_, *motion);
     if (run.integrator.is_direct() && !make_scene(copy).system->is_solvable()) return;
     const std::optional<Run> other = try_run(copy, "carried");
-    if (other) compare("carried", by_wall(run, *motion), by_wall(*other), {.copies = turned_copies(sample)});
+    if (!other) return;
+    Run expected = by_wall(run, *motion);
+    Run actual = by_wall(*other);
+    // The parts into which a motion splits a class have events of their own.
+    if (run.classes.size() != other->classes.size())
+      expected.record.events = actual.record.events = Table(run.record.events.columns());
+    compare("carried", expected, actual, {.copies = turned_copies(sample)});
   }
 
   /// Compares the reference with a run by another integrator; the direct form with one at the tolerance k_form_rtol.
