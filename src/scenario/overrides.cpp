@@ -61,12 +61,6 @@ class PathParser {
   std::string_view text_;
 };
 
-std::string_view without_blanks(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
 bool begins_like_a_bare_text(std::string_view value) {
   const auto first = value.find_first_not_of(" \t");
   return first == std::string_view::npos || std::string_view("[{\"'").find(value[first]) == std::string_view::npos;
@@ -98,7 +92,7 @@ class Override {
     if (equals == std::string::npos) return std::nullopt;
     const std::optional<toml::table> holder = parse_value(equals);
     if (!holder) return std::nullopt;
-    const std::string value(without_blanks(std::string_view(text_).substr(equals + 1)));
+    const std::string value(trimmed(std::string_view(text_).substr(equals + 1)));
     const bool is_bare_text = holder->begin()->second.is_string() && begins_like_a_bare_text(value);
     return TextEdit{std::string(trimmed_key(equals)), is_bare_text ? in_quotes(value) : value};
   }
@@ -112,7 +106,7 @@ class Override {
   }
 
   [[nodiscard]] std::string_view trimmed_key(std::size_t equals) const {
-    return without_blanks(std::string_view(text_).substr(0, equals));
+    return trimmed(std::string_view(text_).substr(0, equals));
   }
 
   /// A table with the value as its only entry. A key of the same length replaces the path, so that positions in the

@@ -9,6 +9,7 @@
 
 #include "scenario/cells.hpp"
 #include "scenario/units.hpp"
+#include "scenario/words.hpp"
 
 namespace monograin {
 namespace {
@@ -36,12 +37,6 @@ bool is_unit(std::string_view text) {
                              [text](Dimension dimension) { return is_unit_of(text, dimension); });
 }
 
-std::string_view without_blanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
 bool is_in(std::string_view text, char opening, char closing) {
   return text.size() > 2 && text.front() == opening && text.back() == closing;
 }
@@ -50,7 +45,7 @@ bool is_in_brackets(std::string_view text) { return is_in(text, '[', ']') || is_
 
 /// "mm" of "mm", "[mm]" and "(mm)".
 std::string_view bare_unit(std::string_view text) {
-  return without_blanks(is_in_brackets(text) ? text.substr(1, text.size() - 2) : text);
+  return trimmed(is_in_brackets(text) ? text.substr(1, text.size() - 2) : text);
 }
 
 /// A heading taken apart.
@@ -62,8 +57,7 @@ struct Heading {
 Heading taken_apart(std::string_view heading) {
   const auto split = [heading](std::size_t at, std::size_t length, std::size_t behind) -> Heading {
     const std::size_t begin = at + length;
-    return {without_blanks(heading.substr(0, at)),
-            without_blanks(heading.substr(begin, heading.size() - begin - behind))};
+    return {trimmed(heading.substr(0, at)), trimmed(heading.substr(begin, heading.size() - begin - behind))};
   };
   const std::size_t square = heading.rfind('[');
   if (square != std::string_view::npos && square > 0 && heading.ends_with(']')) return split(square, 1, 1);

@@ -60,12 +60,6 @@ const std::array<DimensionInfo, 11> k_dimensions{{
     {Dimension::stress_rate, "a stress rate", "Pa/s", "\"1 MPa/s\"", "", 1e-24, 1e33, k_stress_rates},
 }};
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 bool begins_a_number(std::string_view text) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   if (!text.empty() && (text.front() == '+' || text.front() == '-')) text.remove_prefix(1);

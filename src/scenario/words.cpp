@@ -78,6 +78,12 @@ std::string shown(std::string_view text) {
   return on_one_line(text.substr(0, length)).append(dots);
 }
 
+std::string_view trimmed(std::string_view text) noexcept {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
 std::string in_own_words(const std::exception& error) {
   if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
     const auto& path = file->path2().empty() ? file->path1() : file->path2();

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "catalogue.hpp"
 #include "engine/drive.hpp"
@@ -72,56 +73,78 @@ class ColumnSink final : public HistorySink {
   Rows& rows_;
 };
 
+/// A program that passes the values of branches, one after the other.
+class ProgramOfBranches {
+ public:
+  ProgramOfBranches(std::span<const double> values, Step::Kind kind, double start) : kind_(kind), at_(start) {
+    program_.rows.resize(values.size());
+    program_.values.assign(values.begin(), values.end());
+    double largest = std::abs(start);
+    for (const double value : values) largest = std::max(largest, std::abs(value));
+    same_ = k_same_value * largest;
+  }
+
+  [[nodiscard]] DataProgram take() && { return std::move(program_); }
+
+  /// Appends a branch.
+  /// @param first, last  its rows
+  /// @param begin, end   its turning points; infinite: its values have no bound on this side
+  void pass(std::size_t first, std::size_t last, double begin, double end) {
+    const bool rises = begin < end;
+    std::vector<std::size_t> rows(last + 1 - first);  // in the order in which the branch passes their values
+    std::iota(rows.begin(), rows.end(), first);
+    // Noise of the rows next to a turn goes beyond it.
+    for (const std::size_t row : rows)
+      program_.values[row] = std::clamp(program_.values[row], std::min(begin, end), std::max(begin, end));
+    const auto is_before = [rises](double a, double b) { return rises ? a < b : a > b; };
+    std::ranges::stable_sort(rows, is_before, [this](std::size_t row) { return program_.values[row]; });
+    // Where the first branch begins behind the start, because of noise or after a load that is not in the data.
+    if (const double nearest = program_.values[rows.front()]; is_before(nearest, at_) && !is_same(nearest, at_)) {
+      go_to(nearest);
+      program_.times.push_back(static_cast<double>(program_.steps.size()));
+    }
+    const double target = std::isfinite(end) ? end : program_.values[rows.back()];
+    const auto steps_before = static_cast<double>(program_.steps.size());
+    double passed = at_;
+    for (const std::size_t row : rows) {
+      if (!is_same(program_.values[row], passed)) {
+        passed = program_.values[row];
+        program_.times.push_back(steps_before + (passed - at_) / (target - at_));
+      }
+      program_.rows[row] = program_.times.size();
+    }
+    if (!is_same(target, at_)) go_to(target);
+  }
+
+ private:
+  [[nodiscard]] bool is_same(double a, double b) const noexcept { return !(std::abs(a - b) > same_); }
+  void go_to(double target) {
+    program_.steps.push_back({.kind = kind_, .target = target, .duration = 1.0, .rate = {}, .until = {}, .where = {}});
+    at_ = target;
+  }
+
+  DataProgram program_;
+  Step::Kind kind_;
+  double at_;          ///< value that the program has reached
+  double same_ = 0.0;  ///< difference of equal values
+};
+
 }  // namespace
 
 DataProgram program_through(std::span<const double> values, Step::Kind kind, double start) {
-  DataProgram program;
-  program.rows.resize(values.size());
-  program.values.assign(values.begin(), values.end());
-  double largest = std::abs(start);
-  for (const double value : values) largest = std::max(largest, std::abs(value));
-  const double same = k_same_value * largest;
-
-  double at = start;
-  const auto go_to = [&](double target) {
-    program.steps.push_back({.kind = kind, .target = target, .duration = 1.0, .rate = {}, .until = {}, .where = {}});
-    at = target;
-  };
+  ProgramOfBranches program(values, kind, start);
   const std::vector<std::size_t> turns = turning_points(values);
   const std::vector<double> turning = turning_values(values, turns);
-  for (std::size_t k = 0; k < turns.size(); ++k) {
-    if (k == 0 && turns.size() > 1) continue;
-    const std::size_t from = k == 0 ? 0 : turns[k - 1];
-    // The rows of a branch, in the order in which it passes their values. A turning point ends a branch.
-    std::vector<std::size_t> branch(turns[k] + 1 - (k < 2 ? 0 : from + 1));
-    std::iota(branch.begin(), branch.end(), turns[k] + 1 - branch.size());
-    const bool rises = turning[k] > (k == 0 ? start : turning[k - 1]);
-    const auto is_before = [&](double a, double b) { return rises ? a < b : a > b; };
-    for (const std::size_t row : branch) {  // noise of the rows next to a turn goes beyond it
-      double& value = program.values[row];
-      if (k > 1 && is_before(value, turning[k - 1])) value = turning[k - 1];
-      if (k + 1 < turns.size() && is_before(turning[k], value)) value = turning[k];
-    }
-    std::ranges::stable_sort(branch, is_before, [&](std::size_t row) { return program.values[row]; });
-    // Where the first branch begins behind the start, because of noise or after a load that is not in the data.
-    if (const double first = program.values[branch.front()]; is_before(first, at) && std::abs(first - at) > same) {
-      go_to(first);
-      program.times.push_back(static_cast<double>(program.steps.size()));
-    }
-    const double begin = at;
-    const double end = k + 1 < turns.size() ? turning[k] : program.values[branch.back()];
-    const auto steps_before = static_cast<double>(program.steps.size());
-    double passed = begin;
-    for (const std::size_t row : branch) {
-      if (std::abs(program.values[row] - passed) > same) {
-        passed = program.values[row];
-        program.times.push_back(steps_before + (passed - begin) / (end - begin));
-      }
-      program.rows[row] = program.times.size();
-    }
-    if (std::abs(end - begin) > same) go_to(end);
+  if (turns.size() == 1) program.pass(0, 0, start < values[0] ? -k_infinity : k_infinity, values[0]);
+  for (std::size_t k = 1; k < turns.size(); ++k) {
+    // A turning point is the last row of a branch. The first and the last one do not bound the values beside them.
+    const double away = turning[k] > turning[k - 1] ? k_infinity : -k_infinity;
+    const bool is_first = k == 1;
+    const bool is_last = k + 1 == turns.size();
+    program.pass(is_first ? 0 : turns[k - 1] + 1, turns[k], is_first ? -away : turning[k - 1],
+                 is_last ? away : turning[k]);
   }
-  return program;
+  return std::move(program).take();
 }
 
 const Measurable::Column* Measurable::find(std::string_view name) const noexcept {
