@@ -90,14 +90,19 @@ struct Crossing {
   double share = 0.0;
 };
 
-/// Crossings in the order of the abscissae; none for an abscissa that the stretch does not reach.
+/// Crossings in the order of the abscissae; none for an abscissa that the stretch does not reach. Ends of runs that
+/// differ by round-off are the same.
 [[nodiscard]] std::vector<std::optional<Crossing>> crossings(std::span<const double> x, const Stretch& stretch,
                                                              std::span<const double> abscissae) {
   std::vector<std::optional<Crossing>> found(abscissae.size());
+  const auto [lowest, highest] = std::ranges::minmax(x.subspan(stretch.begin, stretch.end - stretch.begin));
+  const double same = k_same_value * std::max(std::abs(lowest), std::abs(highest));
   std::size_t row = stretch.begin;
   for (std::size_t k = 0; k < abscissae.size(); ++k) {
+    const double within = std::clamp(abscissae[k], lowest, highest);
+    const double abscissa = std::abs(within - abscissae[k]) <= same ? within : abscissae[k];
     for (std::size_t next = row; next + 1 < stretch.end; ++next) {
-      const double share = (abscissae[k] - x[next]) / (x[next + 1] - x[next]);
+      const double share = (abscissa - x[next]) / (x[next + 1] - x[next]);
       if (!(share >= 0.0 && share <= 1.0)) continue;
       found[k] = Crossing{next, share};
       row = next;

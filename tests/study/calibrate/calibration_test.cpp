@@ -513,6 +513,23 @@ TEST_F(CalibrationTest, StandardErrorsAreThoseOfTheLinearFitInClosedForm) {
   }
 }
 
+TEST_F(CalibrationTest, ANoteSaysWhereWeightsOfTheSpacingAreNotThoseOfTheNoise) {
+  const auto notes_of = [&](const std::vector<Row>& rows, const std::string& weights) {
+    write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+    write("c.toml", replaced(k_calibration, "[free]", weights + "\n[free]"));
+    std::string all;
+    for (const std::string& note : calibrate(read()).notes) all += note;
+    return all;
+  };
+  std::vector<Row> even;
+  for (const Row& row : noisy_hertz()) even.push_back({1e-6 * static_cast<double>(even.size() + 1), row.y});
+  std::vector<Row> uneven = even;
+  for (std::size_t k = 15; k < uneven.size(); ++k) uneven[k].x += 1e-5 * static_cast<double>(k - 14);
+  EXPECT_TRUE(contains(notes_of(uneven, "weights = \"area\""), "even out the spacing"));
+  EXPECT_FALSE(contains(notes_of(uneven, "weights = \"absolute\""), "even out the spacing"));
+  EXPECT_FALSE(contains(notes_of(even, "weights = \"area\""), "even out the spacing"));
+}
+
 TEST_F(CalibrationTest, ARowOfWeightZeroOnlyDrives) {
   auto rows = noisy_hertz();
   for (Row& row : rows) row.weight = 1.0;

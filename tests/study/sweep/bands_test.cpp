@@ -94,6 +94,23 @@ TEST_F(Bands, AreNotGivenWhereRunsAreMissing) {
   }
 }
 
+TEST_F(Bands, ReachTheEndOfAStepWhereRunsDifferByRoundOff) {
+  std::string text = k_spread;
+  const auto replace = [&text](const std::string& old, const std::string& by) {
+    text.replace(text.find(old), old.size(), by);
+  };
+  replace("\"material.youngs_modulus\" = { mean = \"2 GPa\", std = \"0.2 GPa\" }",
+          "\"particle.radius\" = { mean = \"10 mm\", std = \"0.3 mm\" }");
+  replace("poisson_ratio = 0.0", "poisson_ratio = 0.0\nyoungs_modulus = \"2 GPa\"");
+  replace("0.02 R0", "0.1 mm");
+  replace("0.01 R0", "0.07 mm");
+  const HistoryBands found = bands(read(text), "out");
+  ASSERT_EQ(found.steps.size(), 2U);
+  for (const StepBands& step : found.steps) {
+    for (const std::size_t runs : step.runs) EXPECT_EQ(runs, 40U) << step.step;
+  }
+}
+
 TEST_F(Bands, TakeEveryStepForItself) {
   const HistoryBands found = bands(read(k_spread), "out");
   EXPECT_LT(found.steps[0].x[0], found.steps[0].x[1]) << "loading";
