@@ -222,10 +222,12 @@ std::optional<std::size_t> weakest_contact(Particle& p) {
     sum += softenings[i];
     size += std::abs(softenings[i]);
   }
-  // 0 if contacts on both sides soften alike: the centre may then leave to either side.
+  // 0 if contacts on both sides soften alike: the centre may then leave to either side, away from one of those that
+  // soften most.
   const double side = std::abs(sum) > k_alike * size ? std::copysign(1.0, sum) : 0.0;
   const auto gives_way_before = [&](std::size_t i, std::size_t j) {
-    const double softer = side * (softenings[i] - softenings[j]);
+    const double softer =
+        side != 0.0 ? side * (softenings[i] - softenings[j]) : std::abs(softenings[i]) - std::abs(softenings[j]);
     if (std::abs(softer) > k_alike * size) return softer > 0.0;
     if (p.drive(i).rate() != p.drive(j).rate()) return p.drive(i).rate() < p.drive(j).rate();
     return comes_first(p.centre().in_space(p.centre().direction(i)), p.centre().in_space(p.centre().direction(j)));

@@ -592,5 +592,32 @@ TEST(MdrAdhesiveDie, AgreesInAllFormsWhileOnePairIsTornOffAndAnotherIsDrivenIn) 
   }
 }
 
+TEST(MdrAdhesiveCell, AFoldOnOneAxisDoesNotPullOffAContactAcrossIt) {
+  // The pair along z comes to a fold first. The pair along y, which withdraws faster, pulls off when it would alone.
+  const auto pair = [](const std::string& name, const Eigen::Vector3d& axis, const std::vector<double>& displacements) {
+    return std::vector{wall(name + "+", axis, path(displacements)), wall(name + "-", -axis, {})};
+  };
+  const auto run_cell = [](const std::vector<WallSpec>& walls) {
+    CheckedScenario scenario = between(mdr_scenario(Configuration::walls, 50.0, 0.3, {}), walls);
+    scenario.loading.centre_is_free = true;
+    return run(adhering(scenario, 1e-4));
+  };
+  const std::vector<WallSpec> along_y = pair("y", Eigen::Vector3d::UnitY(), {0.16, 0.11});
+  std::vector<WallSpec> both = along_y;
+  for (const WallSpec& added : pair("z", Eigen::Vector3d::UnitZ(), {0.03, -0.01})) both.push_back(added);
+  const TestRun alone = run_cell(along_y);
+  const TestRun cell = run_cell(both);
+  ASSERT_EQ(alone.record.status, RunStatus::complete) << alone.record.message;
+  ASSERT_EQ(cell.record.status, RunStatus::complete) << cell.record.message;
+  const Words events = cell.events();
+  const auto z = std::ranges::find(events, "z+:pull-off");
+  const auto y = std::ranges::find(events, "y+:pull-off");
+  ASSERT_TRUE(z != events.end() && y != events.end());
+  EXPECT_LT(z - events.begin(), y - events.begin());
+  const std::vector<double> in_cell = cell.outputs("y+.force");
+  const std::vector<double> of_pair = alone.outputs("y+.force");
+  EXPECT_LE(difference(in_cell, of_pair), 2e-3) << "the radius that both pairs make grow, and nothing else";
+}
+
 }  // namespace
 }  // namespace monograin::adhesive_runs_test
