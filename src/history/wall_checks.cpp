@@ -50,14 +50,18 @@ double area_of(const Polygon& polygon) {
   return 0.5 * twice.norm();
 }
 
-/// True if another wall of the same direction lies farther in; of equal walls, the first one counts.
-bool is_behind_another(std::span<const WallPlane> walls, std::size_t i) {
-  for (std::size_t j = 0; j < walls.size(); ++j) {
-    const bool is_parallel = j != i && (walls[j].normal - walls[i].normal).norm() <= k_same_direction;
-    if (!is_parallel) continue;
-    if (walls[j].distance < walls[i].distance || (walls[j].distance == walls[i].distance && j < i)) return true;
+/// The walls without those that stand behind another one of the same direction; of equal ones, the first stays.
+std::vector<WallPlane> foremost(std::span<const WallPlane> walls) {
+  std::vector<WallPlane> kept;
+  for (const WallPlane& wall : walls) {
+    const auto same = std::ranges::find_if(
+        kept, [&](const WallPlane& other) { return (other.normal - wall.normal).norm() <= k_same_direction; });
+    if (same == kept.end())
+      kept.push_back(wall);
+    else if (wall.distance < same->distance)
+      *same = wall;
   }
-  return false;
+  return kept;
 }
 
 /// Rows in which a step or the run ends.
@@ -80,15 +84,15 @@ std::vector<std::size_t> columns_of(const Table& history, std::span<const Contac
 
 }  // namespace
 
-double space_between(std::span<const WallPlane> walls) {
+double space_between(std::span<const WallPlane> all) {
+  const std::vector<WallPlane> walls = foremost(all);
   double farthest = 0.0;
   for (const WallPlane& wall : walls) farthest = std::max(farthest, std::abs(wall.distance));
   double volume = 0.0;
   for (std::size_t i = 0; i < walls.size(); ++i) {
-    if (is_behind_another(walls, i)) continue;
     Polygon face = square_in(walls[i], 2.0 * k_open * farthest);
     for (std::size_t j = 0; j < walls.size() && !face.empty(); ++j) {
-      if (j != i && !is_behind_another(walls, j)) face = clipped(face, walls[j]);
+      if (j != i) face = clipped(face, walls[j]);
     }
     const auto is_far = [&](const Eigen::Vector3d& corner) { return corner.norm() > k_open * farthest; };
     if (std::ranges::any_of(face, is_far)) return k_infinity;

@@ -19,7 +19,7 @@ struct WallPlane {
 
 /// Volume of the space between walls [m3], the intersection of their half-spaces.
 /// @return infinity if the walls leave it open; 0 if they have passed each other
-[[nodiscard]] double space_between(std::span<const WallPlane> walls);
+[[nodiscard]] double space_between(std::span<const WallPlane> all);
 
 /// Warning where the walls leave the particle less space than its own volume, at the end of a step or of the run; empty
 /// if they never do. A solid particle without pores then fills the cell, and resists as a whole.

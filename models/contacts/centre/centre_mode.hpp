@@ -115,6 +115,7 @@ class CentreMode {
     for (std::size_t round = 0; round <= 4 * contacts.size() + 8; ++round) {
       Vector then = rest_;
       centre_.find_roles(Instant(law, contacts, xi), Instant(law, contacts, xi + ahead_), then, roles_);
+      std::optional<Vector> landing;  // where the centre is in the mode that begins, at its first instant
       bool has_changed = false;
       for (std::size_t i = 0; i < contacts.size(); ++i) {
         Contact& c = contacts[i];
@@ -123,8 +124,10 @@ class CentreMode {
                       .then = overlap_as_touching(law, contacts, i, xi + ahead_, then),
                       .turning = xi == 0.0 ? "load-reversal" : "retreat"};
         // A force that no contact bears takes the centre to a wall in no time.
-        if (!c.touches() && change.now < -k_touch && change.then > k_no_change)
-          change.now = overlap_as_touching(law, contacts, i, xi, landing_at(law, contacts, xi, then));
+        if (!c.touches() && change.now < -k_touch && change.then > k_no_change) {
+          if (!landing) landing = centre_.equilibrium(Instant(law, contacts, xi), roles_, rest_, then);
+          change.now = overlap_as_touching(law, contacts, i, xi, *landing);
+        }
         find_touch(law, c, change, is_seen(i), log);
         if (const auto end = find_branch(law, c, change, log, has_changed)) return end;
       }
@@ -238,11 +241,6 @@ class CentreMode {
                                            const Vector& c) {
     if (roles_[i] == Role::idle) return centre_.unpushed_overlap(i, Instant(law, contacts, xi), roles_, rest_, c);
     return contacts[i].drive().value(xi) + centre_.along(i, c) - law.opening(contacts[i].branch());
-  }
-  /// Where the centre is in the mode that begins, at its first instant.
-  /// @param then  where it is a little later
-  [[nodiscard]] Vector landing_at(const Law& law, std::span<const Contact> contacts, double xi, const Vector& then) {
-    return centre_.equilibrium(Instant(law, contacts, xi), roles_, rest_, then);
   }
   /// Makes or loses a contact whose wall and particle just meet, by its overlap a little later.
   static void find_touch(Law& law, Contact& c, const Change& change, bool is_seen, std::vector<Event>& log) {

@@ -89,9 +89,9 @@ void note_weights(const Calibration& calibration, Notes& notes) {
   const auto [least, largest] = std::ranges::minmax(calibration.weights);
   if (!(largest > k_uneven * least)) return;
   notes.push_back(
-      "weights = \"area\" even out the spacing of the rows; errors and intervals take these weights for those of the "
-      "noise, "
-      "and are too narrow if rows far apart are as noisy as others: weights = \"absolute\", or a known noise, give "
+      "weights = \"area\" even out the spacing of the rows; errors and intervals take them for weights of the noise, "
+      "and "
+      "are too narrow if rows far apart are as noisy as others: weights = \"absolute\", or a known noise, give "
       "intervals "
       "that hold");
 }
@@ -102,8 +102,8 @@ void note_path(const Calibration& calibration, const MeasuredCurve& curve, const
   if (const double noise = noise_in(x); noise > 0.0) {
     notes.push_back(fmt::format(
         "{} goes back and forth by {:.2g} {}: that is noise, and turns nothing; turning points lie where the rows "
-        "beside "
-        "them lead. Intervals do not contain the error of these points, and are too narrow where unloading is steep",
+        "beside them lead. Intervals do not contain the error of these points, and are too narrow where unloading is "
+        "steep",
         calibration.x.observable, noise, calibration.x.si));
   } else if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
     notes.push_back("the data begin with unloading; the particle is loaded to their first row from rest");

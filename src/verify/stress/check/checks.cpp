@@ -155,16 +155,9 @@ bool is_always_held(const Run& run, double tolerance) {
   const Table& table = run.record.history;
   const std::vector<ContactClass> classes = make_scene(run.scenario).classes;
   const double least = tolerance * largest_of_kind(table, "force");
-  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
-  for (const ContactClass& c : classes) {
-    for (const Eigen::Vector3d& normal : c.normals) normals += normal * normal.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normals);
-  Eigen::Matrix3d unmoved = Eigen::Matrix3d::Zero();
-  for (int k = 0; k < 3; ++k) {
-    if (solver.eigenvalues()[k] <= k_same_direction)
-      unmoved += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose();
-  }
+  std::vector<Eigen::Vector3d> normals;
+  for (const ContactClass& c : classes) normals.insert(normals.end(), c.normals.begin(), c.normals.end());
+  const Eigen::Matrix3d unmoved = Eigen::Matrix3d::Identity() - onto_normals(normals);
   for (std::size_t row = 1; row < table.row_count(); ++row) {
     if (!is_held(run, classes, row, tolerance, unmoved)) return false;
     for (const ContactClass& c : classes) {

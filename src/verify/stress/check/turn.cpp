@@ -100,6 +100,10 @@ Table history_by_wall(const Run& run, const Eigen::Matrix3d& rotation) {
   return result;
 }
 
+Eigen::Vector3d normal_of(const WallSpec& wall) {
+  return Eigen::Vector3d(wall.normal[0], wall.normal[1], wall.normal[2]).stableNormalized();
+}
+
 /// Duration [s] of a step, if all walls that move have it in their programs, and say where it ends.
 std::optional<double> known_duration(const std::vector<WallSpec>& walls, std::size_t step) {
   std::optional<double> duration;
@@ -116,7 +120,7 @@ std::optional<double> known_duration(const std::vector<WallSpec>& walls, std::si
 
 /// Adds to the displacements of a wall, at the ends of its steps, those by which a motion brings it nearer.
 void carry(WallSpec& wall, const SharedMotion& motion) {
-  const Eigen::Vector3d normal = Eigen::Vector3d(wall.normal[0], wall.normal[1], wall.normal[2]).stableNormalized();
+  const Eigen::Vector3d normal = normal_of(wall);
   std::optional<double> stands_at = -wall.gap;  // nothing while a force moves the wall
   double begin = 0.0;
   wall.steps.resize(motion.times.size());
@@ -190,33 +194,41 @@ Eigen::Vector3d SharedMotion::at(double time) const {
   return from;
 }
 
+Eigen::Matrix3d onto_normals(std::span<const Eigen::Vector3d> normals) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& normal : normals) sum += normal * normal.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
+  Eigen::Matrix3d projection = Eigen::Matrix3d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if (solver.eigenvalues()[k] > k_same_direction)
+      projection += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose();
+  }
+  return projection;
+}
+
 std::optional<SharedMotion> shared_motion(const CheckedScenario& scenario, std::uint64_t sample) {
   if (!takes_free_walls(scenario)) return {};
   const std::vector<WallSpec> walls = specs_of(scenario);
   double largest = 0.0;
   std::size_t steps = 0;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  std::vector<Eigen::Vector3d> normals;
   for (const WallSpec& wall : walls) {
-    const Eigen::Vector3d normal(wall.normal[0], wall.normal[1], wall.normal[2]);
-    spread += normal * normal.transpose() / normal.squaredNorm();
+    normals.push_back(normal_of(wall));
     steps = std::max(steps, wall.steps.size());
     for (const Step& step : wall.steps) {
       if (step.kind == Step::Kind::displacement) largest = std::max(largest, std::abs(step.target));
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  const Eigen::Matrix3d projection = onto_normals(normals);
   Dice dice(sample);
   SharedMotion motion;
   for (std::size_t k = 0; k < steps; ++k) {
     const std::optional<double> duration = known_duration(walls, k);
     if (!duration) return {};
     motion.times.push_back((motion.times.empty() ? 0.0 : motion.times.back()) + *duration);
-    motion.places.emplace_back(Eigen::Vector3d::Zero());
-    for (int axis = 0; axis < 3; ++axis) {
-      const double share = dice.uniform(-1.0, 1.0);
-      if (solver.eigenvalues()[axis] > k_same_direction)
-        motion.places.back() += share * largest * solver.eigenvectors().col(axis);
-    }
+    Eigen::Vector3d place;
+    for (double& component : place) component = largest * dice.uniform(-1.0, 1.0);
+    motion.places.emplace_back(projection * place);
   }
   return largest > 0.0 ? std::optional(motion) : std::nullopt;
 }
@@ -247,10 +259,7 @@ Run by_wall(const Run& run, const SharedMotion& motion) {
     for (std::size_t axis = 0; axis < k_centre.size(); ++axis) {
       if (const auto c = still.find(k_centre[axis])) values[*c] += place[static_cast<Eigen::Index>(axis)];
     }
-    for (const WallSpec& wall : walls) {
-      const Eigen::Vector3d normal(wall.normal[0], wall.normal[1], wall.normal[2]);
-      values[*still.find(wall.name + ".displacement")] -= normal.stableNormalized().dot(place);
-    }
+    for (const WallSpec& wall : walls) values[*still.find(wall.name + ".displacement")] -= normal_of(wall).dot(place);
     moving.append(values);
   }
   result.record.history = std::move(moving);

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "history/run.hpp"
@@ -21,6 +22,10 @@ namespace monograin {
 
 /// The scene with its free walls in the opposite order; nothing if it has fewer than two.
 [[nodiscard]] std::optional<CheckedScenario> reordered(CheckedScenario scenario);
+
+/// Projection onto the directions in which walls act on the particle.
+/// @param normals  unit
+[[nodiscard]] Eigen::Matrix3d onto_normals(std::span<const Eigen::Vector3d> normals);
 
 /// A motion from the origin, with a constant velocity in each step of a program.
 struct SharedMotion {
