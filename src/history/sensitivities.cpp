@@ -37,23 +37,31 @@ constexpr std::size_t k_time = 0;
 constexpr std::size_t k_step = 1;
 constexpr std::size_t k_side = 2;
 
-/// Segments of a history between its corners: the rows just before and just after events and ends of steps.
+/// Rows of a history just before and just after the events at one instant, among them ends of steps, in order. Events
+/// at one instant may have rows of their own, or share them. Never empty.
+using Corner = std::vector<std::size_t>;
+
+/// Segments of a history between its corners.
 class Segments {
  public:
   explicit Segments(const Table& history) : history_(history) {
+    const double slack = k_same_instant * duration();
     std::size_t segment = 0;
     for (std::size_t row = 0; row < history.row_count(); ++row) {
-      if (side(row) > 0.0) ++segment;
+      if (side(row) != 0.0) {
+        const bool is_same = !corners_.empty() && time(row) - time(corners_.back().front()) <= slack;
+        if (!is_same) corners_.emplace_back();
+        corners_.back().push_back(row);
+        if (side(row) > 0.0) segment = corners_.size();
+      }
       of_row_.push_back(segment);
-      if (side(row) != 0.0) corners_.push_back(row);
     }
   }
 
   [[nodiscard]] double time(std::size_t row) const { return history_.at(row, k_time); }
   [[nodiscard]] double side(std::size_t row) const { return history_.at(row, k_side); }
   [[nodiscard]] std::size_t segment(std::size_t row) const { return of_row_[row]; }
-  /// Rows that are corners, in order.
-  [[nodiscard]] const std::vector<std::size_t>& corners() const noexcept { return corners_; }
+  [[nodiscard]] const std::vector<Corner>& corners() const noexcept { return corners_; }
   [[nodiscard]] double duration() const { return history_.row_count() == 0 ? 0.0 : time(history_.row_count() - 1); }
 
   /// Output row of a segment at an instant [s]; none if the segment has no such row.
@@ -74,7 +82,7 @@ class Segments {
  private:
   const Table& history_;
   std::vector<std::size_t> of_row_;
-  std::vector<std::size_t> corners_;
+  std::vector<Corner> corners_;
 };
 
 /// Number of leading events that two runs have in common, in the same order.
@@ -120,22 +128,26 @@ class Differences {
     const double end = same_events_ < events.row_count() ? events.at(same_events_, k_time) : k_infinity;
     const auto& corners = base.corners();
     const auto is_same = [&](const Segments& other, std::size_t corner) {
-      return corner < other.corners().size() && other.side(other.corners()[corner]) == base.side(corners[corner]);
+      if (corner >= other.corners().size()) return false;
+      const Corner& of_other = other.corners()[corner];
+      return other.side(of_other.front()) == base.side(corners[corner].front()) &&
+             other.side(of_other.back()) == base.side(corners[corner].back());
     };
-    while (corners_ < corners.size() && base.time(corners[corners_]) < end && is_same(lower.segments, corners_) &&
-           is_same(upper.segments, corners_)) {
+    while (corners_ < corners.size() && base.time(corners[corners_].front()) < end &&
+           is_same(lower.segments, corners_) && is_same(upper.segments, corners_)) {
       ++corners_;
     }
     std::vector<std::size_t> corner_of_row(history.row_count(), corners.size());
     std::size_t begun = 0;  // last segment that begins at a corner of all runs
     for (std::size_t corner = 0; corner < corners.size(); ++corner) {
-      const std::size_t row = corners[corner];
-      corner_of_row[row] = corner;
-      // An output row at the instant of a corner follows the row just before the event.
-      const bool is_shared = base.side(row) < 0.0 && row + 1 < history.row_count() && base.side(row + 1) == 0.0 &&
-                             base.time(row + 1) == base.time(row);
-      if (is_shared) corner_of_row[row + 1] = corner;
-      if (corner < corners_ && base.side(row) > 0.0) ++begun;
+      for (const std::size_t row : corners[corner]) {
+        corner_of_row[row] = corner;
+        // An output row at the instant of a corner follows the row just before the event.
+        const bool is_shared = base.side(row) < 0.0 && row + 1 < history.row_count() && base.side(row + 1) == 0.0 &&
+                               base.time(row + 1) == base.time(row);
+        if (is_shared) corner_of_row[row + 1] = corner;
+      }
+      if (corner < corners_ && base.side(corners[corner].back()) > 0.0) begun = corner + 1;
     }
     for (std::size_t row = 0; row < history.row_count(); ++row) {
       partners_.push_back(base.segment(row) > begun ? Partners() : partners_of(row, corner_of_row[row]));
@@ -170,10 +182,19 @@ class Differences {
 
   /// @param corner  index of the corner at which the row is; the number of corners if it is at none
   [[nodiscard]] Partners partners_of(std::size_t row, std::size_t corner) const {
-    if (corner < corners_) return {lower_.segments.corners()[corner], upper_.segments.corners()[corner]};
+    if (corner < corners_) return {partner_in(lower_, row, corner), partner_in(upper_, row, corner)};
     if (corner < base_.corners().size()) return {};
     return {lower_.segments.row_at(base_.time(row), base_.segment(row)),
             upper_.segments.row_at(base_.time(row), base_.segment(row))};
+  }
+
+  /// Row of another run at a corner. If its events have other rows than here, the first or the last one counts.
+  [[nodiscard]] std::size_t partner_in(const Variant& other, std::size_t row, std::size_t corner) const {
+    const Corner& here = base_.corners()[corner];
+    const Corner& there = other.segments.corners()[corner];
+    if (here.size() != there.size()) return base_.side(row) > 0.0 ? there.back() : there.front();
+    const auto place = std::ranges::upper_bound(here, row) - here.begin();
+    return there[static_cast<std::size_t>(place) - 1];
   }
 
   const Table& history_;

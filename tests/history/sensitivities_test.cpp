@@ -1,5 +1,6 @@
 #include "history/sensitivities.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -368,6 +369,37 @@ TEST(Sensitivities, FollowEvents) {
     } else if (history.at(row, 2) == 0.0) {
       EXPECT_NEAR(times[row], 0.0, 1e-13 / 50e6) << "output rows stay where they are";
     }
+  }
+}
+
+// Everything scales with the radius. At the end of the first step the run itself has rows for the end and for the
+// reversal, the runs beside it have rows for both together.
+TEST(Sensitivities, CompareInstantsAtWhichEventsMeetInAnyNumberOfRows) {
+  const std::string text = R"toml(model = "semimech"
+particle.radius = "10 mm"
+material = { youngs_modulus = "10 GPa", poisson_ratio = 0.3, yield_stress = "50 MPa" }
+semimech.unloading = "mdr"
+[loading]
+configuration = "die"
+steps = [
+  { displacement = "0.1 R0", duration = "1 s" },
+  { displacement = "0.09 R0", duration = "1 s" },
+  { displacement = "0.11 R0", duration = "1 s" },
+]
+[output]
+points = 10
+[sensitivities]
+keys = ["particle.radius"]
+)toml";
+  for (const char* integrator : {"direct", "cvode-bdf", "odeint-dopri5"}) {
+    const HistoryRun run = run_of(text, {fmt::format("numerics.integrator={}", integrator)});
+    const std::vector<double> force = column(run, "axial.force");
+    const std::vector<double> by_radius = column(run, "d(axial.force)/d(particle.radius)");
+    const double largest = *std::ranges::max_element(force);
+    for (std::size_t row = 0; row < force.size(); ++row) {
+      EXPECT_NEAR(by_radius[row] * 0.01 / largest, 2.0 * force[row] / largest, 1e-6) << integrator << ", row " << row;
+    }
+    EXPECT_LT(run.sensitivities.front().error, 1e-6) << integrator;
   }
 }
 
