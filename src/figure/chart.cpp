@@ -170,6 +170,12 @@ struct PanelAxes {
   return {axis_over(panel.x, std::move(x)), axis_over(panel.y, std::move(y))};
 }
 
+/// True for so many points that they would hide lines and bands: they are drawn below, as small translucent dots.
+[[nodiscard]] bool is_crowd(const ChartSeries& series) {
+  constexpr std::size_t k_crowd = 1000;
+  return series.style == Style::points && series.x.size() > k_crowd;
+}
+
 /// Gives each legend its colour and its points: series with the same legend look the same in every panel.
 class Looks {
  public:
@@ -193,6 +199,7 @@ class Looks {
   [[nodiscard]] std::string points(const ChartSeries& series) const {
     const auto place = static_cast<std::size_t>(std::ranges::find(points_, series.legend) - points_.begin());
     const unsigned shade = series.colour ? colour_of(*series.colour) : k_neutral_colour;
+    if (is_crowd(series)) return fmt::format("with points pt 7 ps 0.2 lc rgb '#A0{:06X}'", shade);
     return fmt::format("with points pt {} ps 0.5 lw 1 lc rgb '#{:06X}'", point_of(place), shade);
   }
 
@@ -324,10 +331,17 @@ class Looks {
     plots.push_back(fmt::format("data index {} using 1:2:3 {}", gnuplot_string(block_of_band(place, k)),
                                 Looks::band_style(panel.bands[k].colour)));
   }
+  const auto add_points = [&](std::size_t k) {
+    plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, k)), looks.points(panel.series[k])));
+  };
+  for (std::size_t k = 0; k < panel.series.size(); ++k) {
+    if (is_crowd(panel.series[k])) add_points(k);
+  }
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const ChartSeries& series = panel.series[k];
+    if (is_crowd(series)) continue;
     if (series.style == Style::points) {
-      plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, k)), looks.points(series)));
+      add_points(k);
     } else if (series.style != Style::phases) {
       plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, k)), looks.line(series)));
     } else {

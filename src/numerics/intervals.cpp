@@ -62,14 +62,14 @@ class Profile {
     return {value, rise, std::move(all)};
   }
 
-  /// Parameters at t standard errors along the k-th; the others follow from the covariance.
-  [[nodiscard]] std::vector<double> predicted(std::size_t k, double t) const {
+  /// Parameters where the k-th is moved by a distance, and the cost is least as far as its shape says.
+  [[nodiscard]] std::vector<double> predicted(std::size_t k, double distance) const {
     std::vector<double> parameters = solution_.parameters;
     const auto column = static_cast<Eigen::Index>(k);
-    const double error = uncertainty_.standard_error(k);
+    const double variance = uncertainty_.cost_covariance(column, column);
     for (std::size_t j = 0; j < parameters.size(); ++j) {
-      const double both = uncertainty_.covariance(static_cast<Eigen::Index>(j), column);
-      if (std::isfinite(both)) parameters[j] += t * both / error;
+      const double both = uncertainty_.cost_covariance(static_cast<Eigen::Index>(j), column);
+      if (std::isfinite(both)) parameters[j] += distance * both / variance;
     }
     return parameters;
   }
@@ -82,17 +82,18 @@ class Profile {
     return true;
   }
 
-  /// End of the k-th interval on one side: value at which the profile has risen by t^2.
+  /// End of the k-th interval on one side: value at which the profile has risen by that of t standard errors.
   /// @param is_cut  receives whether the search ended at the bound, or gave up, before that rise
   [[nodiscard]] double end(std::size_t k, bool is_above, bool& is_cut) {
     const double best = solution_.parameters[k];
     const double bound = is_above ? problem_.parameters[k].upper : problem_.parameters[k].lower;
     is_cut = true;
     if (best == bound) return bound;
-    const double t = uncertainty_.t_quantile;
     const double error = uncertainty_.standard_error(k);
     const double range = std::abs(bound - best);
-    double step = std::isfinite(error) && error > 0.0 ? std::min(t * error, range) : k_first_step * range;
+    double step =
+        std::isfinite(error) && error > 0.0 ? std::min(uncertainty_.t_quantile * error, range) : k_first_step * range;
+    const double t = uncertainty_.t_quantile * uncertainty_.excess_over_cost(k);
     Point inner{best, 0.0, solution_.parameters};
     Point outer;
     for (int count = 0;; ++count) {  // outwards
@@ -155,7 +156,7 @@ class Profile {
         start[j] = solution_.parameters[j] + factor * (from.parameters[j] - solution_.parameters[j]);
       }
     } else if (std::isfinite(uncertainty_.standard_error(k)) && uncertainty_.standard_error(k) > 0.0) {
-      start = predicted(k, (value - solution_.parameters[k]) / uncertainty_.standard_error(k));
+      start = predicted(k, value - solution_.parameters[k]);
     }
     start[k] = value;
     return start;
@@ -182,11 +183,11 @@ CostCheck check_cost(const LeastSquaresProblem& problem, const LeastSquaresSolut
     if (!(uncertainty.standard_error(k) > 0.0)) continue;
     bool differs = false;
     for (const double t : {2.0, -2.0, 1.0, -1.0}) {
-      const std::vector<double> place = profile.predicted(k, t);
+      const std::vector<double> place = profile.predicted(k, t * uncertainty.standard_error(k));
       if (!profile.is_inside(place)) continue;  // a bound cuts the profile there
       if (std::abs(t) == 1.0 && !differs) continue;
       // At a kink, refitting finds a lower cost beside the direction of the covariance.
-      const double ratio = profile.refit(k, place).rise / (t * t);
+      const double ratio = profile.refit(k, place).rise / std::pow(t * uncertainty.excess_over_cost(k), 2);
       const double difference = std::abs(ratio - 1.0);
       differs = differs || difference > k_quadratic;
       double& of_distance = std::abs(t) == 1.0 ? largest_at_one : largest_at_two;
@@ -248,8 +249,12 @@ Bootstrap bootstrap(const LeastSquaresProblem& problem, const LeastSquaresSoluti
   std::normal_distribution<double> normal;
   const std::size_t p = solution.parameters.size();
   const double inflation = std::sqrt(static_cast<double>(n) / static_cast<double>(n - p));
-  const auto data = std::span(solution.residuals).first(n);
-  const double mean = std::accumulate(data.begin(), data.end(), 0.0) / static_cast<double>(n);
+  const auto deviation = [&](std::size_t i) {
+    return uncertainty.deviations.empty() ? 1.0 : uncertainty.deviations[i];
+  };
+  std::vector<double> alike(solution.residuals.begin(), solution.residuals.begin() + static_cast<std::ptrdiff_t>(n));
+  for (std::size_t i = 0; i < n; ++i) alike[i] /= deviation(i);
+  const double mean = std::accumulate(alike.begin(), alike.end(), 0.0) / static_cast<double>(n);
   std::vector<double> change(solution.residuals.size());  // change of the residuals by resampled data
   LeastSquaresProblem again = problem;
   again.progress = {};
@@ -264,7 +269,7 @@ Bootstrap bootstrap(const LeastSquaresProblem& problem, const LeastSquaresSoluti
     for (std::size_t i = 0; i < n;) {
       std::size_t from = std::uniform_int_distribution<std::size_t>(0, n - 1)(generator);
       for (std::size_t k = 0; k < block && i < n; ++k, ++i, ++from) {
-        change[i] = inflation * (data[from % n] - mean) - data[i];
+        change[i] = deviation(i) * inflation * (alike[from % n] - mean) - solution.residuals[i];
       }
     }
     for (std::size_t i = n; i < change.size(); ++i) change[i] = uncertainty.standard_deviation * normal(generator);

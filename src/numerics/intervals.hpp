@@ -62,8 +62,9 @@ struct Bootstrap {
   [[nodiscard]] double standard_error(std::size_t parameter) const;
 };
 
-/// Repeats a fit with resampled data: residuals drawn with replacement in blocks of consecutive ones (Kuensch (1989)),
-/// enlarged by sqrt(n/(n - p)). Residuals of priors are drawn from their distribution.
+/// Repeats a fit with resampled data: residuals, made alike by their deviations, are drawn with replacement in blocks
+/// of consecutive ones (Kuensch (1989)), enlarged by sqrt(n/(n - p)). Residuals of priors are drawn from their
+/// distribution.
 /// @param n      number of residuals of data, which come first; larger than the number of parameters
 /// @param block  length of the blocks; 1 if residuals are independent
 /// @param count  number of samples

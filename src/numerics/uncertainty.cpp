@@ -6,6 +6,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "numerics/derivatives.hpp"
 
@@ -21,10 +22,11 @@ double mean_curvature(const LeastSquaresProblem& problem, std::span<const double
   return curvature / static_cast<double>(n);
 }
 
-/// Norms of the columns of a Jacobian, and the inverse of the normal matrix of columns with norm one. Directions in
+/// Norms of the columns of a Jacobian, the columns with norm one, and the inverse of their normal matrix. Directions in
 /// which the residuals do not change are left out.
 struct NormalInverse {
   Eigen::VectorXd norms;
+  Eigen::MatrixXd scaled;
   Eigen::MatrixXd inverse;
   double condition = 0.0;
   std::vector<bool> is_determined;
@@ -32,9 +34,9 @@ struct NormalInverse {
   /// @param noise  relative error of the residuals
   NormalInverse(const Eigen::MatrixXd& columns, double noise)
       : norms(columns.colwise().norm()),
+        scaled(columns * norms.cwiseInverse().asDiagonal()),
         inverse(Eigen::MatrixXd::Zero(columns.cols(), columns.cols())),
         is_determined(static_cast<std::size_t>(columns.cols()), true) {
-    const Eigen::MatrixXd scaled = columns * norms.cwiseInverse().asDiagonal();
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
     const Eigen::VectorXd& singular = svd.singularValues();
     // Smaller singular values are errors of the differences.
@@ -58,6 +60,15 @@ struct NormalInverse {
   }
 };
 
+/// J^T D^2 J. Rows beyond the deviations are those of priors, with d = 1.
+Eigen::MatrixXd noise_of_normal(const Eigen::MatrixXd& jacobian, std::span<const double> deviations) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Ones(jacobian.rows());
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    squares[static_cast<Eigen::Index>(i)] = deviations[i] * deviations[i];
+  }
+  return jacobian.transpose() * squares.asDiagonal() * jacobian;
+}
+
 /// True if residuals depend on a parameter by more than the error of their differences.
 bool has_influence(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                    const Eigen::MatrixXd& jacobian, std::size_t parameter) {
@@ -72,6 +83,12 @@ bool has_influence(const LeastSquaresProblem& problem, const LeastSquaresSolutio
 double Uncertainty::standard_error(std::size_t parameter) const {
   const auto k = static_cast<Eigen::Index>(parameter);
   return std::sqrt(covariance(k, k));
+}
+
+double Uncertainty::excess_over_cost(std::size_t parameter) const {
+  const auto k = static_cast<Eigen::Index>(parameter);
+  const double ratio = std::sqrt(covariance(k, k) / cost_covariance(k, k));
+  return std::isfinite(ratio) ? ratio : 1.0;
 }
 
 double Uncertainty::correlation(std::size_t first, std::size_t second) const {
@@ -100,7 +117,8 @@ double deviation_of(const LeastSquaresProblem& problem, std::span<const double> 
 }
 
 Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
-                           const Eigen::MatrixXd& jacobian, std::size_t n, double level, std::optional<double> known) {
+                           const Eigen::MatrixXd& jacobian, std::size_t n, double level, std::optional<double> known,
+                           std::vector<double> deviations) {
   using Bound = LeastSquaresSolution::Bound;
   const std::size_t p = problem.parameters.size();
   Uncertainty result;
@@ -110,6 +128,8 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
   result.is_determined.assign(p, true);
   result.covariance.setConstant(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(p),
                                 std::numeric_limits<double>::quiet_NaN());
+  result.cost_covariance = result.covariance;
+  result.deviations = std::move(deviations);
 
   const bool has_size = known || result.degrees_of_freedom > 0;
   if (has_size) {
@@ -135,14 +155,27 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
   }
   if (!has_size) return result;
 
+  Eigen::MatrixXd inverse = normal.inverse;
+  if (!result.deviations.empty()) {
+    const Eigen::MatrixXd middle = noise_of_normal(normal.scaled, result.deviations);
+    inverse = normal.inverse * middle * normal.inverse;
+    if (!known) {
+      // The mean square of the deviations is one: they replace n by n, and p by the trace.
+      const double left = static_cast<double>(n) - (normal.inverse * middle).trace();
+      const double factor = std::sqrt(static_cast<double>(result.degrees_of_freedom) / left);
+      result.standard_deviation *= factor;
+      result.rise *= factor * factor;
+    }
+  }
   const double variance = result.standard_deviation * result.standard_deviation;
   for (std::size_t i = 0; i < interior.size(); ++i) {
     for (std::size_t j = 0; j < interior.size(); ++j) {
       if (!normal.is_determined[i] || !normal.is_determined[j]) continue;
       const auto row = static_cast<Eigen::Index>(i);
       const auto column = static_cast<Eigen::Index>(j);
-      result.covariance(interior[i], interior[j]) =
-          variance * normal.inverse(row, column) / (normal.norms[row] * normal.norms[column]);
+      const double unit = variance / (normal.norms[row] * normal.norms[column]);
+      result.covariance(interior[i], interior[j]) = unit * inverse(row, column);
+      result.cost_covariance(interior[i], interior[j]) = unit * normal.inverse(row, column);
     }
   }
   return result;

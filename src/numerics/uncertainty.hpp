@@ -16,9 +16,13 @@ namespace monograin {
 ///
 ///   covariance = s^2 (J^T J)^-1
 ///
-/// Other losses than the linear one have influence psi and curvature psi' in place of the residuals, and
-/// s^2 = sum psi^2 / (n - p) / mean(psi')^2: the asymptotic covariance of an M-estimator (Huber (1981), section 7.6).
-/// Residuals of priors are rows of J, but do not contribute to s.
+/// Where residuals are weighted otherwise than by their noise, residual i has the standard deviation d_i s, and
+///
+///   covariance = s^2 (J^T J)^-1 J^T D^2 J (J^T J)^-1,   s^2 = cost / (sum d^2 - trace of J (J^T J)^-1 J^T D^2)
+///
+/// (Huber (1967); D is the diagonal of the d_i). Other losses than the linear one have influence psi and curvature psi'
+/// in place of the residuals, and s^2 = sum psi^2 / (n - p) / mean(psi')^2: the asymptotic covariance of an M-estimator
+/// (Huber (1981), section 7.6). Residuals of priors are rows of J with d = 1, but do not contribute to s.
 struct Uncertainty {
   std::size_t degrees_of_freedom = 0;  ///< n - p; if 0 and s is unknown, there are no errors and no intervals
   double level = 0.95;                 ///< probability of the two-sided intervals
@@ -28,8 +32,12 @@ struct Uncertainty {
   std::vector<bool> is_determined;     ///< the residuals determine this parameter; also for parameters at a bound
   double condition = 1.0;              ///< of the Jacobian of determined parameters, with columns of length one
   Eigen::MatrixXd covariance;          ///< nan in rows and columns of parameters at a bound or not determined
+  Eigen::MatrixXd cost_covariance;     ///< s^2 (J^T J)^-1, which the shape of the cost shows
+  std::vector<double> deviations;      ///< d of the residuals of data; empty: all are one
 
   [[nodiscard]] double standard_error(std::size_t parameter) const;
+  /// A parameter's standard error over the one that the cost shows; 1 where residuals are weighted by their noise.
+  [[nodiscard]] double excess_over_cost(std::size_t parameter) const;
   [[nodiscard]] double correlation(std::size_t first, std::size_t second) const;
   /// Half of the width of a parameter's t-interval.
   [[nodiscard]] double half_width(std::size_t parameter) const { return t_quantile * standard_error(parameter); }
@@ -37,16 +45,17 @@ struct Uncertainty {
   [[nodiscard]] double half_width(const Eigen::Ref<const Eigen::VectorXd>& gradient) const;
 };
 
-/// Standard deviation s of the first n residuals, as in Uncertainty. @return nan without degrees of freedom
+/// Standard deviation s of the first n residuals, weighted by their noise. @return nan without degrees of freedom
 [[nodiscard]] double deviation_of(const LeastSquaresProblem& problem, std::span<const double> residuals, std::size_t n);
 
 /// Uncertainty of the parameters of a solution.
 /// @param jacobian  of the residuals at the solution, see residual_jacobian()
 /// @param n         number of residuals of data, which come first
 /// @param level     probability of the intervals, in (0, 1)
-/// @param known     s, if the noise is known
+/// @param known       s, if the noise is known
+/// @param deviations  d of the residuals of data, with a mean square of one; empty: all are one
 [[nodiscard]] Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                                          const Eigen::MatrixXd& jacobian, std::size_t n, double level,
-                                         std::optional<double> known = {});
+                                         std::optional<double> known = {}, std::vector<double> deviations = {});
 
 }  // namespace monograin

@@ -77,6 +77,17 @@ TEST(Chart, DrawsABandPieceByPieceWhereXTurnsBack) {
   EXPECT_NE(script.find("set yrange [0:4"), std::string::npos) << "the band belongs to what the axis shows: " << script;
 }
 
+TEST(Chart, DrawsCrowdsOfPointsBelowTheLines) {
+  ChartSeries points = series("data");
+  points.style = ChartSeries::Style::points;
+  const std::string few = script_of(chart_of({series("fit"), points}));
+  EXPECT_LT(few.find("'panel 1 series 1.'"), few.find("'panel 1 series 2.'"));
+  points.x.assign(1001, 0.5);
+  points.y.assign(1001, 0.5);
+  const std::string many = script_of(chart_of({series("fit"), points}));
+  EXPECT_GT(many.find("'panel 1 series 1."), many.find("'panel 1 series 2."));
+}
+
 TEST(Chart, NamesWhatItFillsInItsLegend) {
   Chart chart = chart_of({series("a")});
   chart.panels[0].bands = {

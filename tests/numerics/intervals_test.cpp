@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
+
 #include "numerics/derivatives.hpp"
 
 namespace monograin::intervals_test {
@@ -19,8 +22,8 @@ double x_of(std::size_t row) { return static_cast<double>(row) / (k_rows - 1); }
 
 /// A fit to data of a function of x and two parameters, 1 and 2, with noise of 0.1.
 template <class Model>
-LeastSquaresProblem problem_of(Model model, double from = -20.0, double to = 20.0) {
-  std::mt19937_64 generator(5);
+LeastSquaresProblem problem_of(Model model, double from = -20.0, double to = 20.0, std::uint64_t seed = 5) {
+  std::mt19937_64 generator(seed);
   std::normal_distribution<double> noise(0.0, 0.1);
   const std::vector<double> truth{1.0, 2.0};
   std::vector<double> y;
@@ -40,11 +43,11 @@ struct Fitted {
   Uncertainty uncertainty;
 };
 
-Fitted fitted(const LeastSquaresProblem& problem) {
+Fitted fitted(const LeastSquaresProblem& problem, std::vector<double> deviations = {}) {
   const auto solution = minimise(problem);
   EXPECT_TRUE(solution);
   const Eigen::MatrixXd jacobian = residual_jacobian(problem, solution->parameters);
-  return {*solution, uncertainty_of(problem, *solution, jacobian, k_rows, 0.95)};
+  return {*solution, uncertainty_of(problem, *solution, jacobian, k_rows, 0.95, {}, std::move(deviations))};
 }
 
 const auto k_line = [](double x, std::span<const double> p) { return p[0] + p[1] * x; };
@@ -125,6 +128,55 @@ TEST(Intervals, OfABootstrapOfALinearProblemAreThoseOfTheCovariance) {
     EXPECT_NEAR(drawn.standard_error(k) / uncertainty.standard_error(k), 1.0, 0.1);
     const Interval interval = drawn.interval(k, 0.95);
     EXPECT_NEAR((interval.upper - interval.lower) / (2.0 * uncertainty.half_width(k)), 1.0, 0.1);
+  }
+}
+
+/// The line's problem with every tenth residual counted five times; the noise of the data stays the same.
+struct WeightedLine {
+  LeastSquaresProblem problem;
+  std::vector<double> deviations;
+};
+
+WeightedLine weighted_line(std::uint64_t seed) {
+  WeightedLine made{problem_of(k_line, -20.0, 20.0, seed), {}};
+  for (std::size_t i = 0; i < k_rows; ++i) made.deviations.push_back(i % 10 == 0 ? 5.0 : 1.0);
+  const double mean_square = (25.0 + 9.0) / 10.0;
+  for (double& deviation : made.deviations) deviation /= std::sqrt(mean_square);
+  made.problem.residuals = [plain = made.problem.residuals, d = made.deviations](std::span<const double> p,
+                                                                                 std::span<double> residuals) {
+    if (!plain(p, residuals)) return false;
+    for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] *= d[i];
+    return true;
+  };
+  return made;
+}
+
+TEST(Intervals, HoldTheTruthWhereWeightsAreNotThoseOfTheNoise) {
+  constexpr int k_fits = 1000;
+  int held = 0;
+  int held_without = 0;
+  for (int fit = 0; fit < k_fits; ++fit) {
+    const WeightedLine line = weighted_line(static_cast<std::uint64_t>(fit));
+    const auto [solution, uncertainty] = fitted(line.problem, line.deviations);
+    const auto holds = [&](double half_width) { return std::abs(solution.parameters[1] - 2.0) < half_width; };
+    if (holds(uncertainty.half_width(1))) ++held;
+    if (holds(fitted(line.problem).uncertainty.half_width(1))) ++held_without;
+  }
+  // 95 % of 1000, with a standard deviation of 6.9
+  EXPECT_NEAR(held, 950, 21);
+  EXPECT_LT(held_without, 850);
+}
+
+TEST(Intervals, OfEveryMethodAgreeWhereWeightsAreNotThoseOfTheNoise) {
+  const WeightedLine line = weighted_line(5);
+  const auto [solution, uncertainty] = fitted(line.problem, line.deviations);
+  EXPECT_EQ(check_cost(line.problem, solution, uncertainty).shape, CostShape::quadratic);
+  const ProfileIntervals profile = profile_intervals(line.problem, solution, uncertainty);
+  const Bootstrap drawn = bootstrap(line.problem, solution, uncertainty, k_rows, 1, 1000, 3);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double half = uncertainty.half_width(k);
+    EXPECT_NEAR(profile.intervals[k].upper - profile.intervals[k].lower, 2.0 * half, 6e-3 * half);
+    EXPECT_NEAR(drawn.standard_error(k) / uncertainty.standard_error(k), 1.0, 0.1);
   }
 }
 

@@ -207,9 +207,9 @@ class Fit {
   Eigen::MatrixXd find_intervals(CalibrationResult& result) {
     for (int round = 0;; ++round) {
       Eigen::MatrixXd gradients = response_jacobian(result.solution.parameters);
-      result.uncertainty =
-          uncertainty_of(problem_, result.solution, weighted(gradients, result.solution.parameters), rows_.size(),
-                         calibration_.confidence, calibration_.knows_noise() ? std::optional(1.0) : std::nullopt);
+      result.uncertainty = uncertainty_of(problem_, result.solution, weighted(gradients, result.solution.parameters),
+                                          rows_.size(), calibration_.confidence,
+                                          calibration_.knows_noise() ? std::optional(1.0) : std::nullopt, deviations());
       const std::optional<LocalMinimum> better = choose_intervals(result);
       if (!better || round == k_most_better) return gradients;
       auto solution = minimise_near(problem_, {&*better, 1});
@@ -219,6 +219,18 @@ class Fit {
       solution->minima.insert(solution->minima.end(), result.solution.minima.begin(), result.solution.minima.end());
       result.solution = std::move(*solution);
     }
+  }
+
+  /// Standard deviations of the weighted residuals, with a mean square of one, where weights are not those of the
+  /// noise: "area" evens out the spacing of rows that are equally noisy. Empty otherwise.
+  [[nodiscard]] std::vector<double> deviations() const {
+    std::vector<double> result;
+    if (calibration_.weighting != "area") return result;
+    double squares = 0.0;
+    for (const std::size_t row : rows_) squares += std::pow(calibration_.weights[row], 2);
+    const double root_mean_square = std::sqrt(squares / static_cast<double>(rows_.size()));
+    for (const std::size_t row : rows_) result.push_back(calibration_.weights[row] / root_mean_square);
+    return result;
   }
 
   /// @return a better fit, if one was found

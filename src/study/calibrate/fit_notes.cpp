@@ -19,7 +19,6 @@ using Notes = std::vector<std::string>;
 constexpr double k_improbable = 1e-3;        // probability below which a test counts as failed
 constexpr double k_far_from_prior = 3.0;     // in standard deviations
 constexpr double k_high_correlation = 0.95;  // of two parameters
-constexpr double k_uneven = 1.5;             // ratio of weights from which on they are not alike
 constexpr double k_poor = 0.1;               // relative standard error from which a parameter is determined poorly
 
 /// Notes residuals that do not have the size of the given noise.
@@ -81,19 +80,6 @@ void note_table_ends(const Calibration& calibration, const MeasuredCurve& curve,
   notes.push_back(fmt::format(
       "the table of the machine's displacement ends at {:.6g} N and is continued by its last piece to {:.6g} N",
       curve.machine.forces.back(), largest));
-}
-
-/// Notes weights that are not those of the noise.
-void note_weights(const Calibration& calibration, Notes& notes) {
-  if (calibration.knows_noise() || calibration.weighting != "area") return;
-  const auto [least, largest] = std::ranges::minmax(calibration.weights);
-  if (!(largest > k_uneven * least)) return;
-  notes.push_back(
-      "weights = \"area\" even out the spacing of the rows; errors and intervals take them for weights of the noise, "
-      "and "
-      "are too narrow if rows far apart are as noisy as others: weights = \"absolute\", or a known noise, give "
-      "intervals "
-      "that hold");
 }
 
 /// Notes noise of x, and data that begin with unloading.
@@ -161,7 +147,6 @@ std::vector<std::string> notes_of(const Calibration& calibration, const Calibrat
                     calibration.free.size(), result.points));
   }
   if (calibration.knows_noise()) note_chi_squared(result, notes);
-  note_weights(calibration, notes);
   note_priors(calibration, result, notes);
   if (!solution.has_converged) note("the search ended before its steps had vanished; the fit may not be the best");
   if (solution.failures > 0) {
