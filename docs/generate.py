@@ -458,10 +458,11 @@ def write_models(program, schema, ready):
             page += key_table(material["properties"], required, ("preset",), words_of(sections["[material]"]))
             listed = [line.strip() for line in sections["[material]"] if line.startswith(" " * 29)]
             if listed:
-                page += "\nA `preset` sets all of these keys; keys given beside it override the preset.\n\n"
-                split = [re.fullmatch(r"(.*) \((.*)\)", item).groups() for item in listed]
-                page += table(["preset", "from"], [[f"`{a}`", b] for a, b in split])
-                presets += [[f"`{a}`", f"[`{name}`](/reference/models/{name}.md)", b] for a, b in split]
+                page += "\nA `preset` gives values of keys; keys beside it override them. With its default options, the "
+                page += "model takes these materials as they are, unless the last column says what they lack:\n\n"
+                split = [re.fullmatch(r'"(.*)", ([^;]*)(?:; (.*))?', item).groups("") for item in listed]
+                page += table(["preset", "from", "lacks"], [[f"`{a}`", b, c] for a, b, c in split])
+                presets += [[f"`{a}`", f"[`{name}`](/reference/models/{name}.md)", b, c] for a, b, c in split]
             if "ludwik" in material["properties"]:
                 ludwik = material["properties"]["ludwik"]
                 page += "\nKeys of the table `ludwik`:\n\n" + key_table(ludwik["properties"], ludwik["required"])
@@ -506,7 +507,7 @@ def write_models(program, schema, ready):
     for unused in [*(set(COLUMNS) - used), *(set(CONTACT_COLUMNS) - used_of_contacts)]:
         fail(f"no ready scenario has the column '{unused}', whose meaning this script knows")
     write("models.md", table(["model", "description"], rows))
-    write("presets.md", table(["preset", "model", "from"], presets))
+    write("presets.md", table(["preset", "model", "from", "lacks"], presets))
     lines = []
     for event in sorted(events_of):
         models = events_of[event]

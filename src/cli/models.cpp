@@ -13,6 +13,7 @@
 #include "catalogue.hpp"
 #include "cli/commands.hpp"
 #include "cli/terminal.hpp"
+#include "scenario/model_input.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/words.hpp"
@@ -112,7 +113,10 @@ void print_model(const Model& model) {
   print_options(model.material_options);
   if (!model.presets.empty()) {
     print_data("  {:<25}a material of the source's tables; keys beside it win. One of\n", "preset");
-    for (const Preset& preset : model.presets) print_data("  {:<27}{} ({})\n", "", preset.name, preset.source);
+    for (const Preset& preset : model.presets) {
+      const std::string shortfall = shortfall_of(preset, model);
+      print_data("  {:<27}\"{}\", {}{}\n", "", preset.name, preset.source, shortfall.empty() ? "" : "; " + shortfall);
+    }
   }
   for (const QuantityKey& key : model.material) {
     const std::string default_text = key.default_value ? fmt::format("default {}", *key.default_value)

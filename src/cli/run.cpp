@@ -174,8 +174,12 @@ void add_check_command(CLI::App& app, Action& action) {
   command->callback([options, &action] {
     action = [options] {
       for (const Job& job : read_jobs(*options)) {
-        for (const auto& remark : {remark_on_points(job.scenario), remark_on_times(job.scenario)}) {
-          if (remark) fmt::print(stderr, "{}: warning: {}\n", job.scenario.name, *remark);
+        std::vector<std::string> remarks = job.scenario.doubts;
+        for (auto& remark : {remark_on_points(job.scenario), remark_on_times(job.scenario)}) {
+          if (remark) remarks.push_back(*remark);
+        }
+        for (const std::string& remark : remarks) {
+          fmt::print(stderr, "{}: warning: {}\n", job.scenario.name, remark);
         }
       }
       return static_cast<int>(k_success);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <span>
 
 #include "catalogue.hpp"
@@ -144,6 +146,7 @@ Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) 
         record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
   }
   run.timings.integration = watch.lap();
+  std::ranges::copy(scenario.doubts, std::back_inserter(run.record.warnings));
   if (auto remark = remark_on_points(scenario)) run.record.warnings.push_back(std::move(*remark));
 
   for (std::size_t c = 0; c < scene.classes.size(); ++c) run.classes.push_back({scene.classes[c].name, scene.walls[c]});

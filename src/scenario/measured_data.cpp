@@ -73,6 +73,12 @@ class DataParser {
                    "a number where a row of headings is expected, for example displacement[m],force[N]; or give the "
                    "columns by their numbers, from 1");
     }
+    if (data_.layout.splits_decimals) {
+      line_ = data_.layout.first_line;
+      return fault(1, fmt::format("{} cells below {} headings: commas seem to separate the cells and to mark decimals; "
+                                  "expected another separator, or cells in quotes",
+                                  headings.size(), headings.size() / 2));
+    }
     if (!format_.unit_of.empty() && format_.unit_of.size() != headings.size()) {
       line_ = std::max(data_.layout.heading_line, data_.layout.first_line);
       fault(1, fmt::format("{} columns, but {} units are given; expected a unit for each, in the order of the columns",

@@ -1,5 +1,7 @@
 #include "scenario/model_input.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <iterator>
@@ -36,6 +38,21 @@ PlannedStep planned(const Step& step) {
   return result;
 }
 
+/// Value of an option that a scenario does not give; none for a quantity without default.
+std::optional<OptionValue> default_of(const OptionKey& option) {
+  switch (option.kind) {
+    case OptionKey::Kind::choice:
+      return std::string(option.choices.front());
+    case OptionKey::Kind::toggle:
+      return option.default_toggle;
+    case OptionKey::Kind::file:
+      return std::string();
+    case OptionKey::Kind::quantity:
+      break;
+  }
+  return option.default_value ? std::optional<OptionValue>(*option.default_value) : std::nullopt;
+}
+
 }  // namespace
 
 ModelInput model_input(const CheckedScenario& scenario) {
@@ -49,6 +66,31 @@ ModelInput model_input(const CheckedScenario& scenario) {
   if (!model.configurations.empty()) input.configuration = configuration_word(scenario.loading.configuration);
   if (!model.has_walls()) std::ranges::transform(scenario.loading.steps, std::back_inserter(input.program), planned);
   return input;
+}
+
+std::string shortfall_of(const Preset& preset, const Model& model) {
+  std::map<std::string, double> values;
+  std::vector<std::string_view> missing;
+  for (const QuantityKey& key : model.material) {
+    const auto given = std::ranges::find(preset.values, key.name, &Preset::Value::key);
+    if (given != preset.values.end()) {
+      values.emplace(key.name, given->value);
+    } else if (key.default_value) {
+      values.emplace(key.name, *key.default_value);
+    } else if (!key.is_optional) {
+      missing.push_back(key.name);
+    }
+  }
+  if (!missing.empty()) return fmt::format("needs {} beside it", fmt::join(missing, ", "));
+  if (model.objections == nullptr) return {};
+  std::map<std::string, OptionValue> options;
+  for (const auto keys : {model.material_options, model.options}) {
+    for (const OptionKey& option : keys) {
+      if (const auto value = default_of(option)) options.emplace(option.name, *value);
+    }
+  }
+  const std::vector<Objection> objections = model.objections({.values = values, .options = options, .curves = {}});
+  return objections.empty() ? std::string() : "refused on its own: " + objections.front().message;
 }
 
 }  // namespace monograin

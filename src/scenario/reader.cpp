@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -251,6 +252,9 @@ CheckedScenario read_tree(const toml::table& tree, const std::string& origin, co
   read_numerics(reading, root, language, scenario);
   if (faults_so_far == 0) read_sensitivities(reading, root, tree, language, scenario);
   if (language.model != nullptr && faults_so_far == 0) check_rules(reading, tree, origin, language, scenario);
+  scenario.doubts = std::move(reading.doubtful_lengths);
+  // Without any unit, the file may be meant in units of its own, with a modulus of one.
+  if (reading.has_units) std::ranges::move(reading.doubtful_stresses, std::back_inserter(scenario.doubts));
   return scenario;
 }
 

@@ -17,6 +17,8 @@ using Kind = KeySpec::Kind;
 
 const toml::table k_empty_table;
 
+constexpr double k_soft_stress = 1e3;  // [Pa]; particles are stiffer and stronger than that
+
 bool is_identifier(std::string_view text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto may_follow = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-'; };
@@ -216,6 +218,10 @@ std::optional<double> Section::read_quantity(const KeySpec& spec, const toml::no
     const ParsedQuantity quantity = parse_quantity(text->get(), spec.dimension, radius);
     if (!quantity.value) return fault(spec, node, quantity.problem);
     value = quantity.value;
+    const bool is_scale = spec.dimension == Dimension::time || quantity.unit == dimension_info(spec.dimension).relative;
+    reading_.has_units = reading_.has_units || !is_scale;
+  } else if (value) {
+    doubt_missing_unit(spec, node, *value);
   }
   if (!value) return unexpected(spec, node);
   if (const Range range = finite_range(spec); !range.contains(*value)) {
@@ -301,6 +307,27 @@ void Section::check_tables(const KeySpec& spec, const toml::node& node) {
   }
   for (const toml::node& entry : *array) {
     if (!entry.is_table()) unexpected(spec, entry);
+  }
+}
+
+/// Notes a number without a unit that is unlikely in SI units: a wall beyond the centre of the particle, or a stress
+/// that no solid has.
+void Section::doubt_missing_unit(const KeySpec& spec, const toml::node& node, double value) {
+  const double size = std::abs(value);
+  const SourceLocation place = place_of(node.source(), origin_.place);
+  const std::string written =
+      fmt::format("{} = {}{}", spec.name, shown(node), place.line > 0 ? fmt::format(" (line {})", place.line) : "");
+  if (spec.dimension == Dimension::length && spec.knows_initial_radius && size > reading_.initial_radius) {
+    reading_.doubtful_lengths.push_back(
+        fmt::format("{} has no unit and is taken as {:.6g} m, {:.3g} times the radius; "
+                    "if it is meant otherwise, write the unit, such as \"{} R0\"",
+                    written, value, value / reading_.initial_radius, shown(node)));
+  }
+  if (spec.dimension == Dimension::stress && size > 0.0 && size < k_soft_stress) {
+    reading_.doubtful_stresses.push_back(
+        fmt::format("{} has no unit and is taken as {:.6g} Pa; if it is meant "
+                    "otherwise, write the unit, such as \"{} MPa\"",
+                    written, value, shown(node)));
   }
 }
 

@@ -16,10 +16,14 @@
 
 namespace monograin {
 
-/// State that all readers of a scenario share: the list of faults, and the length of R0.
+/// State that all readers of a scenario share: the list of faults, the length of R0, and numbers without a unit.
 struct Reading {
   FaultList& faults;
   double initial_radius = 1.0;  ///< [m]
+  bool has_units = false;       ///< some quantity of the file, no time and none in R0, is written with a unit
+  /// Numbers without a unit whose value in SI units is unlikely, a sentence each.
+  std::vector<std::string> doubtful_lengths{};
+  std::vector<std::string> doubtful_stresses{};
 };
 
 /// Reports keys that are neither among `keys` nor, with their reason, among `foreign`.
@@ -81,6 +85,7 @@ class Section {
   [[nodiscard]] std::optional<Value> read_direction(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<Value> read_texts(const KeySpec& spec, const toml::node& node);
   void check_tables(const KeySpec& spec, const toml::node& node);
+  void doubt_missing_unit(const KeySpec& spec, const toml::node& node, double value);
   std::nullopt_t fault(const KeySpec& spec, const toml::node& node, std::string_view problem);
   std::nullopt_t unexpected(const KeySpec& spec, const toml::node& node, std::string_view suggestion = {});
 

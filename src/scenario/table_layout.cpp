@@ -171,6 +171,7 @@ class LayoutFinder {
     } else {
       layout.headings.resize(width_);
       layout.preamble = next;
+      layout.splits_decimals = splits_decimals(first);
     }
     layout.first_line = next < rows_.size() ? rows_[next].number : rows_.back().number + 1;
     take_units(row_units, layout);
@@ -275,6 +276,14 @@ class LayoutFinder {
       return is_below_headings ? row - 1 : row;
     }
     return std::nullopt;
+  }
+
+  /// True if the row above the data has texts only, half as many as the data have cells: "s,N" above "0,5,1,25".
+  /// @param first  index of the first row of data
+  [[nodiscard]] bool splits_decimals(std::size_t first) const {
+    if (dialect_.separator != ',' || first == 0 || first == rows_.size()) return false;
+    const SampledRow& above = rows_[first - 1];
+    return above.numbers == 0 && above.filled > 1 && 2 * above.filled == width_;
   }
 
   [[nodiscard]] bool names_units(std::size_t row) const {

@@ -34,6 +34,7 @@ struct TableLayout {
   std::vector<std::string> headings{};  ///< one for each column; empty texts where the table has none
   std::vector<std::string> units{};     ///< of each column: as given, or of the row of units, or of its heading
   std::vector<bool> is_numeric{};       ///< true if most cells of the column are numbers
+  bool splits_decimals = false;         ///< commas separate cells and mark decimals: rows have two cells a heading
 };
 
 /// Finds the layout from the first thousand lines that are neither blank nor comments ('#').

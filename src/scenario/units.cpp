@@ -14,20 +14,32 @@
 namespace monograin {
 namespace {
 
+constexpr double k_standard_gravity = 9.80665;                     // [m/s^2], exact by definition
+constexpr double k_pound_force = 0.45359237 * k_standard_gravity;  // [N]
+
 // The micro sign has two code points: U+00B5 (keyboards) and U+03BC (Greek letter).
 constexpr std::array k_lengths{
-    Unit{"m", 1.0},   Unit{"cm", 1e-2}, Unit{"mm", 1e-3}, Unit{"um", 1e-6},
-    Unit{"µm", 1e-6}, Unit{"μm", 1e-6}, Unit{"nm", 1e-9}, Unit{"km", 1e3},
+    Unit{"m", 1.0},   Unit{"cm", 1e-2}, Unit{"mm", 1e-3}, Unit{"um", 1e-6},   Unit{"µm", 1e-6},
+    Unit{"μm", 1e-6}, Unit{"nm", 1e-9}, Unit{"km", 1e3},  Unit{"in", 0.0254},
 };
-constexpr std::array k_stresses{Unit{"Pa", 1.0}, Unit{"kPa", 1e3}, Unit{"MPa", 1e6}, Unit{"GPa", 1e9},
-                                Unit{"N/mm^2", 1e6}};
+constexpr std::array k_stresses{Unit{"Pa", 1.0},  Unit{"kPa", 1e3},    Unit{"MPa", 1e6},
+                                Unit{"GPa", 1e9}, Unit{"N/mm^2", 1e6}, Unit{"psi", k_pound_force / (0.0254 * 0.0254)}};
 constexpr std::array k_surface_energies{
     Unit{"J/m^2", 1.0},  Unit{"J/m²", 1.0}, Unit{"mJ/m^2", 1e-3},
     Unit{"mJ/m²", 1e-3}, Unit{"N/m", 1.0},  Unit{"mN/m", 1e-3},
 };
 constexpr std::array k_forces{
-    Unit{"N", 1.0},   Unit{"kN", 1e3},  Unit{"MN", 1e6},  Unit{"mN", 1e-3},
-    Unit{"uN", 1e-6}, Unit{"µN", 1e-6}, Unit{"μN", 1e-6}, Unit{"nN", 1e-9},
+    Unit{"N", 1.0},
+    Unit{"kN", 1e3},
+    Unit{"MN", 1e6},
+    Unit{"mN", 1e-3},
+    Unit{"uN", 1e-6},
+    Unit{"µN", 1e-6},
+    Unit{"μN", 1e-6},
+    Unit{"nN", 1e-9},
+    Unit{"kgf", k_standard_gravity},
+    Unit{"gf", 1e-3 * k_standard_gravity},
+    Unit{"lbf", k_pound_force},
 };
 constexpr std::array k_times{
     Unit{"s", 1.0},   Unit{"ms", 1e-3}, Unit{"us", 1e-6},  Unit{"µs", 1e-6},

@@ -66,7 +66,7 @@ TEST_F(MaterialPointCommand, RefusesWhatDoesNotGoTogetherWithItsPlace) {
 TEST_F(MaterialPointCommand, DescribesTheModelAndItsConstants) {
   ASSERT_EQ(monograin("models material-point").code, 0);
   for (const char* word :
-       {"yield_model", "MCC PH-200 (Table 4)", "lateral_stress", "plastic-tension", "poisson-half"}) {
+       {"yield_model", "\"MCC PH-200\", Table 4", "lateral_stress", "plastic-tension", "poisson-half"}) {
     EXPECT_NE(text("stdout.txt").find(word), std::string::npos) << word;
   }
   ASSERT_EQ(monograin("models material-point --parameters point.toml").code, 0);

@@ -241,6 +241,16 @@ TEST(MachineFiles, TakeTheUsersWordForTheirWriting) {
   EXPECT_EQ(listed.data.columns[0].values, std::vector{1.0});
 }
 
+TEST(MachineFiles, WithCommasBetweenCellsAndInNumbersAreRefused) {
+  const std::string text = "Weg,Kraft\n0,5,1,25\n1,5,2,25\n";
+  const std::vector<ColumnRequest> numbered{{"", {"c.toml"}, "x = 1", 1}, {"", {"c.toml"}, "y = 2", 2}};
+  EXPECT_EQ(read(text, {}, numbered).faults,
+            Cells{"d.csv:2:1: 4 cells below 2 headings: commas seem to separate the cells and to mark decimals; "
+                  "expected another separator, or cells in quotes"});
+  EXPECT_EQ(read("Weg,Kraft\n\"0,5\",\"1,25\"\n", {}, numbered).data.columns[1].values, std::vector{1.25});
+  EXPECT_EQ(read("a,b,c\n0,5,1,25\n1,5,2,25\n", {}, numbered).faults, Cells()) << "three texts are a preamble";
+}
+
 TEST(MachineFiles, MayHaveNoHeadings) {
   const Outcome outcome =
       read("A test of one grain\n1 2.5\n2 3.5\n", {}, {{"", {"c.toml"}, "x = 1", 1}, {"", {"c.toml"}, "y = 2", 2}});

@@ -1,10 +1,13 @@
 // Rules between keys: Ludwik's law, what a model objects to, and walls that go back without a law for it.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "catalogue.hpp"
+#include "scenario/model_input.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/support.hpp"
 
@@ -109,6 +112,32 @@ TEST(CompressibleRules, TakePresets) {
       faults_of(granule_with("preset = \"Starch, dry\"\nnu0 = 0.3\nshear_ratio = 0.5", "")),
       (Lines{"die.toml:4:1: key 'yield_pressure' is missing in [material], and preset 'Starch, dry' does not have "
              "it; expected for example yield_pressure = \"50 MPa\""}));
+}
+
+// What the list of presets says must be what a scenario with this preset alone gets to read.
+TEST(Presets, SayWhatTheyLackAsAScenarioWithThemDoes) {
+  std::size_t good = 0;
+  for (const char* name : {"compressible", "material-point"}) {
+    const Model& model = *find_model(name);
+    const bool has_walls = model.has_walls();
+    for (const Preset& preset : model.presets) {
+      const std::string material = fmt::format("preset = \"{}\"", preset.name);
+      const std::string text = has_walls ? granule_with(material, "")
+                                         : fmt::format(
+                                               "model = \"{}\"\n[material]\n{}\n[loading]\nconfiguration = \"simple\"\n"
+                                               "[[loading.steps]]\nstrain = -0.1\nduration = 1\n",
+                                               name, material);
+      const Lines faults = faults_of(text);
+      const std::string shortfall = shortfall_of(preset, model);
+      EXPECT_EQ(faults.empty(), shortfall.empty()) << name << ": " << preset.name << ": " << shortfall;
+      if (faults.empty()) ++good;
+      const std::string refusal = "refused on its own: ";
+      if (shortfall.starts_with(refusal)) {
+        EXPECT_TRUE(faults.front().ends_with(shortfall.substr(refusal.size()))) << faults.front();
+      }
+    }
+  }
+  EXPECT_EQ(good, 8U) << "two of compressible and six of material-point";
 }
 
 TEST(CompressibleRules, RefuseNumbersOutOfRangeAndQuantitiesTheLawDoesNotHave) {

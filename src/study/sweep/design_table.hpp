@@ -1,4 +1,4 @@
-/// Designs given as CSV files: one column per key, one row per run.
+/// Designs given as tables in text files: one column per key, one row per run.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace monograin {
 
-/// Cells of a CSV file as they are written, with their positions.
+/// Cells of a table, with their positions.
 struct DesignTable {
   struct Cell {
     std::string text;
@@ -19,8 +19,9 @@ struct DesignTable {
   std::vector<std::vector<Cell>> rows;  ///< each as long as the headings
 };
 
-/// Parses a table. Blank lines and lines that begin with '#' do not count; quotes have no meaning. Adds a fault for
-/// each row of another length than the headings, and for a table without rows.
+/// Parses a table. The first comma, semicolon or tab among the headings separates all cells; with one of the latter
+/// two, decimal commas become points. Blank lines and lines that begin with '#' do not count; quotes have no meaning.
+/// Adds a fault for each row of another length than the headings, and for a table without rows.
 [[nodiscard]] DesignTable parse_design_table(std::string_view text, const std::string& origin, FaultList& faults);
 
 /// A heading's key and unit: `material.yield_stress[MPa]`. An index at the end, as in `a.normal[2]`, is no unit.

@@ -131,6 +131,19 @@ TEST_F(SweepFiles, ATableTakesAnyUnitTheProjectKnows) {
   for (std::size_t run = 0; run < 2; ++run) EXPECT_NO_THROW(static_cast<void>(scenario_of(sweep, run)));
 }
 
+TEST_F(SweepFiles, ATableMayComeFromASpreadsheet) {
+  for (const char separator : {';', '\t'}) {
+    std::string table = "material.youngs_modulus[GPa];particle.radius;mdr.strict\n2,5;1,5 mm;true\n3;0,004;false\n";
+    std::ranges::replace(table, ';', separator);
+    write("runs.csv", table);
+    const Sweep sweep = read("scenario = \"small.toml\"\ndesign = \"table\"\ntable = \"runs.csv\"\n");
+    ASSERT_EQ(sweep.runs.size(), 2U);
+    EXPECT_EQ(number(sweep, 0, 0), 2.5e9);
+    EXPECT_EQ(number(sweep, 0, 1), 1.5e-3);
+    EXPECT_EQ(number(sweep, 1, 1), 0.004);
+  }
+}
+
 constexpr const char* k_space_filling = R"toml(scenario = "small.toml"
 design = "maxpro"
 runs = 24
