@@ -33,7 +33,7 @@ constexpr double k_most_gain = 1e3;
 constexpr double k_hardly_unique = 1e-3;
 // Bulk modulus over the yield pressure from which on integrators may fail.
 constexpr double k_stiff = 1e5;
-// Share of the strength below which a negative work of the flow is round-off.
+// Share of the strength below which a negative rate of the flow's energy is round-off.
 constexpr double k_negligible_work = 1e-9;
 
 // Indices of the unknowns.
@@ -294,7 +294,9 @@ void MaterialPoint::observe(double xi, std::span<const double> y, std::span<doub
   if (phase_.is_plastic) {
     const Yield yield = yield_on(phase_.parameters, now.at, phase_.branch, now.p, now.s);
     f = yield.f;
-    if (compressible) least_work_ = std::min(least_work_, flow_work(now, yield));
+    const FlowEnergy energy = flow_energy(phase_, now, yield);
+    least_.work = std::min(least_.work, energy.work);
+    least_.dissipation = std::min(least_.dissipation, energy.dissipation);
   } else {
     f = yield_function(phase_.parameters, now.at, now.p, now.s);
   }
@@ -326,9 +328,17 @@ std::optional<Difficulty> MaterialPoint::difficulty(double xi, std::span<const d
 }
 
 std::vector<Diagnostic> MaterialPoint::warnings() const {
-  if (least_work_ > -k_negligible_work) return {};
-  return {{"flow that is not associated (dpc) does negative plastic work: it lives on the elastic energy",
-           "least work rate over the strength", least_work_}};
+  std::vector<Diagnostic> found;
+  if (least_.work < -k_negligible_work) {
+    found.push_back({"flow that is not associated (dpc) does negative plastic work: it lives on the elastic energy",
+                     "least work rate over the strength", least_.work});
+  } else if (least_.dissipation < -k_negligible_work) {
+    found.push_back(
+        {"the growing moduli store more than the plastic work: the material creates energy, and a closed "
+         "cycle gives back more than it took; expected a stiffer material, or moduli that grow less",
+         "least dissipation rate over the strength", least_.dissipation});
+  }
+  return found;
 }
 
 double MaterialPoint::quantity(Quantity quantity, int, double xi, std::span<const double> y) {

@@ -84,7 +84,7 @@ class MaterialPoint final : public HybridSystem {
   PlasticStrains at_start_;  ///< plastic strains with which the phase began; solve() starts from them
   ElasticEnd elastic_end_;
   std::vector<Guard> guards_;
-  double least_work_ = 0.0;  ///< least work rate of the flow in observed states
+  FlowEnergy least_;  ///< least rates of the flow in observed states
 };
 
 }  // namespace monograin::compressible

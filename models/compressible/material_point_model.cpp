@@ -65,25 +65,23 @@ constexpr std::array k_point_material{
                 k_density,
                 {},
                 true},
-    QuantityKey{"relative_density",
-                "relative density at the start; not given: the reference density",
-                Dimension::none,
-                k_density,
-                {},
-                true},
+    QuantityKey{
+        "relative_density",
+        "relative density at the start; not given: the reference density. With vm it stays, has no effect, and is "
+        "0.7 unless given",
+        Dimension::none,
+        k_density,
+        {},
+        true},
     QuantityKey{"transition_width", "size of the arc between shear line and cap; 0: a corner (dpc)", Dimension::none,
                 k_not_negative, 0.0},
 };
 
+constexpr Range k_strains{.lower = -10.0, .upper = 10.0};  // larger ones are percent
+
 constexpr std::array k_drives{
-    DriveKey{"strain",
-             "axial logarithmic strain, tension positive; [axial, lateral] on a strain path",
-             Control::strain,
-             Dimension::none,
-             {},
-             "-0.2",
-             true,
-             "strain_axial"},
+    DriveKey{"strain", "axial logarithmic strain, tension positive; [axial, lateral] on a strain path", Control::strain,
+             Dimension::none, k_strains, "-0.2", true, "strain_axial"},
     DriveKey{"stress",
              "axial stress, tension positive",
              Control::stress,
@@ -94,14 +92,8 @@ constexpr std::array k_drives{
              "stress_axial"},
 };
 constexpr std::array k_lateral_drives{
-    DriveKey{"lateral_strain",
-             "lateral logarithmic strain (strain-path; not given: kept)",
-             Control::strain,
-             Dimension::none,
-             {},
-             "0.05",
-             false,
-             "strain_lateral"},
+    DriveKey{"lateral_strain", "lateral logarithmic strain (strain-path; not given: kept)", Control::strain,
+             Dimension::none, k_strains, "0.05", false, "strain_lateral"},
     DriveKey{"lateral_stress",
              "lateral stress (triaxial; not given: kept)",
              Control::stress,
@@ -148,7 +140,8 @@ constexpr std::array<string_view, 9> k_point_domain{
     "the round-off of the strains",
     "dpc: an arc (transition_width) that ends above the axis of pressure",
     "plastic loading ends at corners of the program only",
-    "warned: dpc flow that is not associated does negative plastic work at low pressure",
+    "warned: dpc flow that is not associated does negative plastic work at low pressure; a soft vmdc or dpc that "
+    "stiffens, and a vm whose moduli grow under pressure, create energy",
     "integrator direct: vm, and hydrostatic loading; elsewhere the state depends on the path to it and is integrated",
     "stiff where the elastic strains are far smaller than those of the program (vmdc in tension, dpc in shear, "
     "stiffness_ratio above 1000): explicit integrators need thousands of steps there, cvode-bdf and ida do not",
@@ -204,6 +197,25 @@ std::vector<Objection> point_objections(const ModelInput& input) {
   }
   if (yield_model != "vm") check_needed(input, found);
   return found.empty() ? start_objections(parameters_of(input)) : found;
+}
+
+bool is_tensile(const std::optional<Prescription>& part) { return !part || part->target >= 0.0; }
+
+bool only_stretches(const PlannedStep& step) { return is_tensile(step.first) && is_tensile(step.lateral); }
+
+std::vector<std::string> reservations(const ModelInput& input) {
+  std::vector<std::string> found;
+  const bool is_vm = input.word("yield_model") == "vm";
+  if (is_vm && input.optional_material("reference_density")) {
+    found.emplace_back(
+        "von Mises plasticity has no density: the moduli and the strength begin as they are given, and eta, xi, xi1 "
+        "are "
+        "growth per plastic shear strain, but those of a preset are growth per relative density");
+  }
+  if (!is_vm && std::ranges::all_of(input.program, only_stretches)) {
+    found.emplace_back("the program only stretches the material: tension is positive, compression negative");
+  }
+  return found;
 }
 
 /// @throws std::invalid_argument where the material has no meaning at the start: a fit tries such numbers too
@@ -331,6 +343,7 @@ Model material_point_model() noexcept {
           .lateral_drives = k_lateral_drives,
           .conditions = k_conditions,
           .objections = point_objections,
+          .reservations = reservations,
           .bind = bind_point,
           .channels = channels,
           .parameters = point_parameters,

@@ -11,6 +11,11 @@ namespace {
 // Cosine between the normal of the yield surface and the elastic rate of stress below which the two are perpendicular.
 constexpr double k_neutral = 1e-12;
 
+/// Derivative of the plastic strains by the multiplier.
+PlasticStrains flow_direction(const Phase& phase, const Yield& yield) noexcept {
+  return {is_compressible(phase.parameters.model) ? -yield.g_p : std::abs(yield.g_s), yield.g_s};
+}
+
 }  // namespace
 
 double PlasticFlow::cosine() const noexcept {
@@ -34,7 +39,7 @@ PlasticFlow plastic_flow(const Phase& phase, const Response& now, const Yield& y
   flow.yield = yield;
   const Yield& y = flow.yield;
   const bool compressible = is_compressible(phase.parameters.model);
-  flow.direction = {compressible ? -y.g_p : std::abs(y.g_s), y.g_s};
+  flow.direction = flow_direction(phase, y);
   flow.elastic = elastic_rate(at, phase.conditions);
   flow.loading = y.f_p * flow.elastic.p + y.f_s * flow.elastic.s;
   // At fixed strains, densification reduces the elastic strain and stiffens the rest.
@@ -51,8 +56,12 @@ PlasticFlow plastic_flow(const Phase& phase, const Response& now, const Yield& y
   return flow;
 }
 
-double flow_work(const Response& now, const Yield& yield) noexcept {
-  return (now.p * yield.g_p + now.s * yield.g_s) / (now.at.shear_strength.value * std::hypot(yield.g_p, yield.g_s));
+FlowEnergy flow_energy(const Phase& phase, const Response& now, const Yield& yield) noexcept {
+  const PlasticStrains direction = flow_direction(phase, yield);
+  const double volumetric = is_compressible(phase.parameters.model) ? -direction.phi : 0.0;
+  const double unit = now.at.shear_strength.value * std::hypot(volumetric, direction.deviatoric);
+  return {(now.p * volumetric + now.s * direction.deviatoric) / unit,
+          dissipation(now.at, now.p, now.s, volumetric, direction.deviatoric, direction.phi) / unit};
 }
 
 bool continues(const Phase& phase, const Response& now) {

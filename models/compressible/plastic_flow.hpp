@@ -41,8 +41,13 @@ struct PlasticFlow {
 /// Flow with another yield function than that of the phase's branch.
 [[nodiscard]] PlasticFlow plastic_flow(const Phase& phase, const Response& now, const Yield& yield);
 
-/// Work rate of the flow, over the strength and the magnitude of the flow's strains.
-[[nodiscard]] double flow_work(const Response& now, const Yield& yield) noexcept;
+/// What the flow does to the balance of energy, over the strength and the magnitude of the flow's strains.
+struct FlowEnergy {
+  double work = 0.0;         ///< rate of the plastic work
+  double dissipation = 0.0;  ///< the part of it that stiffening does not store
+};
+
+[[nodiscard]] FlowEnergy flow_energy(const Phase& phase, const Response& now, const Yield& yield) noexcept;
 
 /// True if plastic flow continues over a corner of the program: if the program stands still, if it leads outwards, or
 /// if it leaves along the tangent of a curved surface.

@@ -234,6 +234,22 @@ std::vector<Objection> objections(const ModelInput& input) {
   return found;
 }
 
+bool is_elastic(const ModelInput& input) { return !input.optional_material("hardening_modulus"); }
+
+std::vector<std::string> reservations(const ModelInput& input) {
+  std::vector<std::string> found;
+  if (is_elastic(input) && input.material("yield_stress") != k_published_yield_stress) {
+    found.emplace_back(
+        "yield_stress has no effect without hardening_modulus: the particles stay elastic; expected hardening_modulus "
+        "= 0 for particles that are ideally plastic");
+  }
+  const auto loosens = [](const PlannedStep& step) { return !step.first || step.first->target < 0.0; };
+  if (std::ranges::all_of(input.program, loosens)) {
+    found.emplace_back("the program only loosens the packing: compression is positive");
+  }
+  return found;
+}
+
 std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> /*classes*/,
                                    const Reach& /*reach*/) {
   const Law law = law_of(input);
@@ -275,8 +291,6 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
   return list;
 }
 
-bool is_elastic(const ModelInput& input) { return !input.optional_material("hardening_modulus"); }
-
 }  // namespace
 
 std::span<const string_view> regime_words() noexcept { return k_regime_words; }
@@ -301,6 +315,7 @@ Model model() noexcept {
           .domain = k_domain,
           .drives = k_drives,
           .objections = objections,
+          .reservations = reservations,
           .bind = bind,
           .channels = channels,
           .parameters = parameters,

@@ -288,6 +288,8 @@ struct Model {
 
   /// Lists inconsistent values. Null: any admissible values are consistent.
   std::vector<Objection> (*objections)(const ModelInput& input) = nullptr;
+  /// Lists what a scenario may mean otherwise than it says, a sentence each, as warnings. Null: nothing is listed.
+  std::vector<std::string> (*reservations)(const ModelInput& input) = nullptr;
   /// Fits `strength` and `hardening_exponent` to Ludwik's law. Null: the model has no key `ludwik`.
   PowerLaw (*power_law_of)(const LudwikInput& ludwik) = nullptr;
   /// Makes the equations for contact classes; `classes` is empty for a model without walls. Never null.

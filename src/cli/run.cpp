@@ -174,10 +174,8 @@ void add_check_command(CLI::App& app, Action& action) {
   command->callback([options, &action] {
     action = [options] {
       for (const Job& job : read_jobs(*options)) {
-        std::vector<std::string> remarks = job.scenario.doubts;
-        for (auto& remark : {remark_on_points(job.scenario), remark_on_times(job.scenario)}) {
-          if (remark) remarks.push_back(*remark);
-        }
+        std::vector<std::string> remarks = remarks_on(job.scenario);
+        if (auto remark = remark_on_times(job.scenario)) remarks.push_back(std::move(*remark));
         for (const std::string& remark : remarks) {
           fmt::print(stderr, "{}: warning: {}\n", job.scenario.name, remark);
         }

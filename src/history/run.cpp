@@ -88,6 +88,7 @@ void warn_of_walls(Run& run, std::span<const ContactClass> classes) {
     if (warning) run.record.warnings.push_back(*std::move(warning));
   };
   if (!model.has_pores) add(space_warning(run.record.history, classes, scenario.radius));
+  add(escape_warning(run.record.history, classes, scenario.radius));
   if (model.has_free_centre && !scenario.loading.centre_is_free) add(balance_warning(run.record.history, classes));
 }
 
@@ -146,8 +147,7 @@ Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) 
         record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
   }
   run.timings.integration = watch.lap();
-  std::ranges::copy(scenario.doubts, std::back_inserter(run.record.warnings));
-  if (auto remark = remark_on_points(scenario)) run.record.warnings.push_back(std::move(*remark));
+  std::ranges::move(remarks_on(scenario), std::back_inserter(run.record.warnings));
 
   for (std::size_t c = 0; c < scene.classes.size(); ++c) run.classes.push_back({scene.classes[c].name, scene.walls[c]});
   run.skipped = std::move(scene.skipped);

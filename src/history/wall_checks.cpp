@@ -16,6 +16,8 @@ namespace {
 
 // A cell that extends this many times as far as its farthest wall counts as open.
 constexpr double k_open = 1e3;
+// Path of a centre that gets a warning, over that of the farthest wall, beyond a radius.
+constexpr double k_escaping = 3.0;
 // Least net force on a fixed centre that gets a warning, over the largest force of a wall.
 constexpr double k_least_net_force = 0.01;
 
@@ -152,6 +154,29 @@ std::optional<std::string> balance_warning(const Table& history, std::span<const
       "the forces of the walls do not balance: a fixed centre bears up to {:.3g} N, {:.2g} of the largest force of a "
       "wall (t = {:.9g} s); with [loading] centre = \"equilibrium\" the particle moves until they do",
       largest_net, largest_net / largest_force, time);
+}
+
+std::optional<std::string> escape_warning(const Table& history, std::span<const ContactClass> classes, double radius) {
+  const auto x = history.find("centre_x");
+  if (!x) return std::nullopt;
+  const std::vector<std::size_t> displacements = columns_of(history, classes, "displacement");
+  double by_walls = 0.0;
+  double by_centre = 0.0;
+  double time = 0.0;
+  for (std::size_t row = 0; row < history.row_count(); ++row) {
+    for (const std::size_t column : displacements) {
+      by_walls = std::max(by_walls, std::abs(history.at(row, column)));
+    }
+    const Eigen::Vector3d centre(history.at(row, *x), history.at(row, *x + 1), history.at(row, *x + 2));
+    if (!(centre.norm() > by_centre)) continue;
+    by_centre = centre.norm();
+    time = history.at(row, 0);
+  }
+  if (!(by_centre > radius + k_escaping * by_walls)) return std::nullopt;
+  return fmt::format(
+      "the walls squeeze the particle out between them: its centre moves by {:.3g} R0, no wall by more than {:.3g} R0 "
+      "(t = {:.9g} s)",
+      by_centre / radius, by_walls / radius, time);
 }
 
 }  // namespace monograin

@@ -33,4 +33,11 @@ struct WallPlane {
 /// @param history  has a column `force` for each class; rows in which one is undefined do not count
 [[nodiscard]] std::optional<std::string> balance_warning(const Table& history, std::span<const ContactClass> classes);
 
+/// Warning where the walls squeeze a free particle out between them: its centre moves by much more than any wall; empty
+/// if it does not, or if the history has no centre.
+/// @param history  has a column `displacement` for each class
+/// @param radius   initial radius R0 [m], > 0
+[[nodiscard]] std::optional<std::string> escape_warning(const Table& history, std::span<const ContactClass> classes,
+                                                        double radius);
+
 }  // namespace monograin

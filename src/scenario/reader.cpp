@@ -84,6 +84,7 @@ void read_preset(Reading& reading, const Section& material, const Language& lang
   const auto presets = language.model->presets;
   const std::string name = material.text("preset");
   if (const auto preset = std::ranges::find(presets, name, &Preset::name); preset != presets.end()) {
+    reading.has_units = true;  // its values are in SI units
     for (const auto& [key, value] : preset->values) {
       const KeySpec* spec = find_key(language.material, key);
       if (spec != nullptr && !material.has_or_misspells(key))

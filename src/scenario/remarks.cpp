@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
+#include "catalogue.hpp"
+#include "scenario/model_input.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -45,11 +48,32 @@ std::optional<double> latest_end(const CheckedScenario& scenario) {
   return end;
 }
 
+/// True if some wall moves outwards or pulls, and none moves inwards or is pressed on the particle.
+bool only_withdraws(const CheckedScenario& scenario) {
+  std::vector<double> targets;
+  for (const std::vector<Step>& program : programs_of(scenario)) {
+    for (const Step& step : program) targets.push_back(control_of(step.kind) ? step.target : 0.0);
+  }
+  return !targets.empty() && std::ranges::max(targets) <= 0.0 && std::ranges::min(targets) < 0.0;
+}
+
 }  // namespace
 
-std::optional<std::string> remark_on_points(const CheckedScenario& scenario) {
-  if (scenario.output.times.empty() || scenario.output.points == 0) return std::nullopt;
-  return fmt::format("[output] points = {} is ignored: times say where the rows are", scenario.output.points);
+std::vector<std::string> remarks_on(const CheckedScenario& scenario) {
+  std::vector<std::string> remarks = scenario.doubts;
+  const Model& model = *find_model(scenario.model);
+  if (model.has_walls() && only_withdraws(scenario)) {
+    remarks.emplace_back(
+        "no wall moves towards the particle or is pressed on it: displacements are positive inwards, forces in "
+        "compression");
+  }
+  if (model.reservations != nullptr)
+    std::ranges::move(model.reservations(model_input(scenario)), std::back_inserter(remarks));
+  if (!scenario.output.times.empty() && scenario.output.points != 0) {
+    remarks.push_back(
+        fmt::format("[output] points = {} is ignored: times say where the rows are", scenario.output.points));
+  }
+  return remarks;
 }
 
 std::optional<std::string> remark_on_times(const CheckedScenario& scenario) {

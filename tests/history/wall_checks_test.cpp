@@ -126,6 +126,24 @@ normal = [0, 0, -1]
 fixed = true
 )";
 
+TEST(EscapeWarning, ComesWhereWallsSqueezeAParticleOut) {
+  const auto warnings_of = [](double tilt) {
+    const std::string text = fmt::format(
+        "model = \"hertz\"\nparticle.radius = \"1 mm\"\nmaterial = {{ youngs_modulus = \"1 GPa\", poisson_ratio = 0.3 "
+        "}}\n[loading]\nconfiguration = \"walls\"\ncentre = \"equilibrium\"\n[[loading.wall]]\nname = "
+        "\"top\"\nnormal = [0, 0, 1]\nsteps = [{{ displacement = \"0.1 R0\", duration = 1 }}]\n[[loading.wall]]\nname "
+        "= \"bottom\"\nnormal = [0, {}, -1]\nsteps = [{{ displacement = \"0.1 R0\", duration = 1 }}]\n",
+        tilt);
+    std::string all;
+    for (const std::string& warning : run_scenario(parse_scenario(text, "w.toml")).record.warnings) all += warning;
+    return all;
+  };
+  // Frictionless walls push the particle sideways until it is free: 0.2 R0 over the tilt.
+  EXPECT_TRUE(contains(warnings_of(0.0175), "its centre moves by 11.4 R0, no wall by more than 0.1 R0"));
+  EXPECT_FALSE(contains(warnings_of(0.0), "its centre moves"));
+  EXPECT_FALSE(contains(warnings_of(1.0), "its centre moves"));
+}
+
 TEST(BalanceWarning, ComesWhereAFixedCentreIsPushedTowardsAWall) {
   const std::string fixed = fmt::format(k_press, "fixed");
   const std::string free = fmt::format(k_press, "equilibrium");

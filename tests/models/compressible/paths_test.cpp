@@ -6,10 +6,13 @@
 #include <iostream>
 #include <random>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "compressible/yield_surface.hpp"
+#include "history/run.hpp"
 #include "models/compressible/cases.hpp"
+#include "support/refusal.hpp"
 
 namespace monograin::compressible::paths_test {
 namespace {
@@ -182,6 +185,35 @@ TEST(MaterialPoint, WarnsOfNegativePlasticWork) {
   EXPECT_NE(dilating.record.warnings.front().find("negative plastic work"), std::string::npos);
   const TestRun associated = run(point(base_case(), Configuration::die, {strain(-0.2), strain(-0.19)}), "cvode-bdf");
   EXPECT_TRUE(associated.record.warnings.empty());
+}
+
+// A hydrostatic cycle from 0.7 to 0.89: the closed form of the dissipation is negative beyond 0.754 for E/sigma_y
+// = 4.5.
+TEST(MaterialPoint, WarnsWhereItCreatesEnergy) {
+  const auto warnings_of = [](const std::string& material, const char* rest) {
+    const std::string text = "model = \"material-point\"\n[material]\n" + material + rest;
+    std::string all;
+    for (const std::string& warning : run_scenario(parse_scenario(text, "m.toml")).record.warnings)
+      all += warning + '\n';
+    return all;
+  };
+  const char* const hydrostatic =
+      "[loading]\nconfiguration = \"hydrostatic\"\nsteps = [{ strain = -0.5, duration = 1, until = { relative_density "
+      "= "
+      "0.89 } }, { stress = 0, duration = 1 }]\n";
+  const std::string base = "preset = \"Base case\"\n";
+  EXPECT_TRUE(contains(warnings_of(base + "stiffness_ratio = 4.5\n", hydrostatic), "creates energy"));
+  EXPECT_FALSE(contains(warnings_of(base + "stiffness_ratio = 6\n", hydrostatic), "creates energy"));
+  const char* const die =
+      "[loading]\nconfiguration = \"die\"\nsteps = [{ strain = -0.2, duration = 1 }, { strain = -0.15, duration = 1 "
+      "}]\n";
+  const std::string von_mises =
+      "yield_model = \"vm\"\nyield_pressure = \"100 MPa\"\nstiffness_ratio = 100\nshear_ratio = 1\nnu0 = 0.3\n";
+  EXPECT_TRUE(contains(warnings_of(von_mises + "xi = 2\n", die), "creates energy"));
+  EXPECT_EQ(warnings_of(von_mises + "eta = 2\n", die), "");
+  EXPECT_TRUE(contains(warnings_of(base + "yield_model = \"vm\"\n", die), "has no density"));
+  const char* const stretching = "[loading]\nconfiguration = \"die\"\nsteps = [{ strain = 0.01, duration = 1 }]\n";
+  EXPECT_TRUE(contains(warnings_of(base, stretching), "tension is positive"));
 }
 
 TEST(MaterialPoint, DoesNotKnowTime) {

@@ -1,0 +1,47 @@
+// Remarks on a scenario that may be meant otherwise, before it runs.
+
+#include "scenario/remarks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "scenario/support.hpp"
+
+namespace monograin::remarks_test {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+Lines remarks_of(const std::string& text) { return remarks_on(parse_scenario(text, "a.toml")); }
+
+TEST(Remarks, SayThatNoWallMovesInwards) {
+  const Lines outwards{
+      "no wall moves towards the particle or is pressed on it: displacements are positive inwards, forces in "
+      "compression"};
+  EXPECT_EQ(remarks_of(with_line(12, "displacement = \"-0.1 R0\"")), outwards);
+  EXPECT_EQ(remarks_of(with_line(12, "displacement = \"0.1 R0\"")), Lines());
+  EXPECT_EQ(remarks_of(with_line(12, "displacement = 0")), Lines()) << "nothing moves";
+  EXPECT_EQ(remarks_of(with_more("[[loading.steps]]\ndisplacement = \"-0.1 R0\"\nduration = 1\n")), Lines())
+      << "unloading beyond first touch";
+  EXPECT_EQ(remarks_of(with_line(12, "force = \"1 N\"")), Lines());
+}
+
+TEST(Remarks, SayThatAPackingStaysElasticOrIsOnlyLoosened) {
+  const auto packing = [](const std::string& material, const std::string& step) {
+    return "model = \"packing\"\n[material]\nyoungs_modulus = \"10 MPa\"\npoisson_ratio = 0.45\n" + material +
+           "\n[loading]\nsteps = [{ " + step + ", duration = 1 }]\n";
+  };
+  const std::string compaction = "packing_fraction = 0.95";
+  const Lines elastic = remarks_of(packing("yield_stress = \"0.3 MPa\"", compaction));
+  ASSERT_EQ(elastic.size(), 1U);
+  EXPECT_TRUE(elastic.front().starts_with("yield_stress has no effect without hardening_modulus")) << elastic.front();
+  EXPECT_EQ(remarks_of(packing("yield_stress = \"0.3 MPa\"\nhardening_modulus = 0", compaction)), Lines());
+  EXPECT_EQ(remarks_of(packing("", compaction)), Lines());
+  EXPECT_EQ(remarks_of(packing("", "strain = -0.15")),
+            Lines{"the program only loosens the packing: compression is positive"});
+}
+
+}  // namespace
+}  // namespace monograin::remarks_test
