@@ -20,6 +20,7 @@ class SignalWatch {
     const auto now = std::chrono::steady_clock::now();
     if (!raised_ && now >= next_) {
       next_ = now + k_between_looks;
+      stay_if_finalizing();
       const py::gil_scoped_acquire acquired;
       if (PyErr_CheckSignals() != 0) raised_.emplace();
     }
@@ -54,7 +55,7 @@ auto run_interruptibly(Work&& work) {
   SignalWatch watch;
   auto result = std::async(std::launch::async, [&] { return work(static_cast<const std::atomic<bool>&>(stop)); });
   {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     while (!stop && result.wait_for(SignalWatch::k_between_looks) != std::future_status::ready) {
       stop = watch.has_raised();
     }

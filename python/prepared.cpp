@@ -20,7 +20,7 @@ std::span<const double> span_of(const Numbers& numbers) {
 
 RunResult run_prepared(const PreparedScenario& prepared, const Numbers& values) {
   const std::span<const double> numbers = span_of(values);
-  const py::gil_scoped_release released;
+  const Unlocked unlocked;
   return prepared.run(numbers);
 }
 
@@ -31,7 +31,7 @@ py::tuple map_prepared(const PreparedScenario& prepared, const Numbers& samples,
   const std::span<const double> numbers = span_of(samples);
   SignalWatch watch;
   const MapResult result = [&] {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return prepared.map(numbers, formulas, {.threads = threads, .stop = [&watch] { return watch.has_raised(); }});
   }();
   return py::make_tuple(Numbers(static_cast<py::ssize_t>(result.values.size()), result.values.data()), result.status,

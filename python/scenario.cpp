@@ -37,7 +37,7 @@ SoundScenario read_sound(const std::string& file) {
 }
 
 RunResult run_sound(const SoundScenario& scenario) {
-  const py::gil_scoped_release released;
+  const Unlocked unlocked;
   Run run = run_scenario(scenario.checked);
   run.timings.parse = scenario.parse_time;
   return RunResult(std::make_shared<const Run>(std::move(run)));
@@ -52,7 +52,7 @@ py::list parameters_of(const SoundScenario& scenario) {
 }
 
 History profile_of(const SoundScenario& scenario, double time) {
-  const py::gil_scoped_release released;
+  const Unlocked unlocked;
   return history_of(contact_profiles(scenario.checked, time));
 }
 
@@ -80,7 +80,7 @@ void add_scenario(py::module_& module) {
       .def_readonly("events", &RunResult::events)
       .def("json", &RunResult::json)
       .def("save", [](const RunResult& run, const std::string& folder) {
-        const py::gil_scoped_release released;
+        const Unlocked unlocked;
         run.save(folder);
       });
 }

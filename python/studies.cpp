@@ -25,7 +25,7 @@ py::tuple sweep(const std::string& file, const std::string& output, int threads,
   if (threads < 0) throw std::invalid_argument("threads: expected 0 for one for each core, or more");
   if (shard < 1 || shard > shard_count) throw std::invalid_argument("shard: expected (i, n) with i from 1 to n");
   const Sweep plan = [&] {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return read_sweep(file);
   }();
   const fs::path folder = output.empty() ? fs::path("runs") / plan.name : fs::path(output);
@@ -38,7 +38,7 @@ py::tuple sweep(const std::string& file, const std::string& output, int threads,
                             }});
   });
   if (outcome.runs_missing == 0 && plan.bands) {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     static_cast<void>(write_bands(plan, bands_of(plan, folder), folder));
   }
   return py::make_tuple(folder.string(), outcome.runs_missing);
@@ -48,7 +48,7 @@ py::tuple sweep(const std::string& file, const std::string& output, int threads,
 std::string sensitivity(const std::string& file, const std::string& output, int threads, double confidence) {
   const py::tuple swept = sweep(file, output, threads, 1, 1);
   const std::string folder = swept[0].cast<std::string>();
-  const py::gil_scoped_release released;
+  const Unlocked unlocked;
   const Sweep plan = read_sweep(file);
   static_cast<void>(write_sensitivities(plan, sensitivities_of(plan, folder, confidence), folder));
   return folder;
@@ -71,7 +71,7 @@ struct Fitted {
 /// @param confidence  confidence level in (0, 1); NaN: the level of the calibration file
 Fitted calibrate_file(const std::string& file, const std::string& output, double confidence) {
   Calibration calibration = [&] {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return read_calibration(file);
   }();
   if (!std::isnan(confidence)) {
@@ -116,7 +116,7 @@ struct Designed {
 /// @param output  folder for the files that the program writes; empty: none are written
 Designed design_file(const std::string& file, const std::string& output) {
   const ExperimentPlan plan = [&] {
-    const py::gil_scoped_release released;
+    const Unlocked unlocked;
     return read_experiment_plan(file);
   }();
   return run_interruptibly([&](const std::atomic<bool>& stop) {

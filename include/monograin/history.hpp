@@ -42,10 +42,13 @@ class History {
   /// The column of that name: name, unit, labels and values.
   /// @param name  name of a column, with or without its unit: "axial.force" or "axial.force[N]"
   /// @throws std::out_of_range for an unknown name; the message suggests the nearest one
-  [[nodiscard]] const Column& column(std::string_view name) const;
+  [[nodiscard]] const Column& column(std::string_view name) const&;
+  [[nodiscard]] Column column(std::string_view name) const&& { return column(name); }  ///< a copy
   /// Values of a column in its unit, one for each row; NaN where the quantity is undefined.
   /// @throws std::out_of_range for an unknown name
-  [[nodiscard]] std::span<const double> operator[](std::string_view name) const { return column(name).values; }
+  [[nodiscard]] std::span<const double> operator[](std::string_view name) const& { return column(name).values; }
+  /// Copy of the values, which would otherwise end with a history that is a temporary, such as that of a call of run().
+  [[nodiscard]] std::vector<double> operator[](std::string_view name) const&& { return column(name).values; }
   /// Words of a column, one for each row, such as the regimes of a contact.
   /// @throws std::out_of_range for an unknown name, or a column of numbers
   [[nodiscard]] std::vector<std::string_view> words(std::string_view name) const;

@@ -1,6 +1,7 @@
 /// A scenario: the keys of a scenario file, read from one or set one by one.
 #pragma once
 
+#include <concepts>
 #include <filesystem>
 #include <initializer_list>
 #include <span>
@@ -41,7 +42,10 @@ class Scenario {
   /// @param key  as in a scenario file, tables joined by dots: `material.youngs_modulus`. An index in brackets picks
   ///             from an array, counted from 0: `loading.steps[0].displacement`. One past the end appends an entry.
   Scenario& set(std::string_view key, double value);
-  Scenario& set(std::string_view key, int value);
+  template <std::integral Integer>
+  Scenario& set(std::string_view key, Integer value) {
+    return set_value(key, std::to_string(value));
+  }
   Scenario& set(std::string_view key, bool value);
   Scenario& set(std::string_view key, std::string_view text);
   Scenario& set(std::string_view key, const char* text) { return set(key, std::string_view(text)); }
@@ -50,12 +54,18 @@ class Scenario {
     return set(key, std::span(values.begin(), values.size()));
   }
   Scenario& set(std::string_view key, std::span<const std::string> texts);
+  Scenario& set(std::string_view key, std::initializer_list<std::string_view> texts) {
+    return set(key, std::vector<std::string>(texts.begin(), texts.end()));
+  }
+  Scenario& set(std::string_view key, std::initializer_list<const char*> texts) {
+    return set(key, std::vector<std::string>(texts.begin(), texts.end()));
+  }
 
   /// All faults: unknown and missing keys, types, units, ranges, inconsistent values. Empty: the scenario can be run.
   [[nodiscard]] std::vector<Fault> validate() const;
 
   /// Parameters of particle and material, defaults filled in, and the constants that follow from them, as
-  /// `monograin models NAME --parameters` prints them.
+  /// `monograin models NAME --parameters FILE` prints them.
   /// @throws ScenarioError with all faults
   [[nodiscard]] std::vector<Parameter> parameters() const;
 

@@ -69,7 +69,8 @@ string bibtex(const Citation& c) {
   add("title", "{" + in_tex(c.title) + "}");  // inner braces keep a style from changing capitals
   add(c.kind == Citation::Kind::thesis ? "school" : "journal", in_tex(c.venue));
   const std::size_t bracket = c.volume.find('(');
-  add("volume", string(c.volume.substr(0, bracket)));
+  const string_view volume = c.volume.substr(0, bracket);
+  add("volume", string(volume.substr(0, volume.find_last_not_of(' ') + 1)));
   if (bracket != string_view::npos) {
     add("number", string(c.volume.substr(bracket + 1, c.volume.size() - bracket - 2)));
   }

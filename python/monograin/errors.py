@@ -80,3 +80,6 @@ class Interrupted(KeyboardInterrupt):
         self.statuses = statuses
         done = int((statuses != "pending").sum())
         super().__init__(f"stopped after {done} of {len(statuses)} runs")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Interrupted, (self.table, self.statuses))

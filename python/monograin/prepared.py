@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterable, Literal, Sequence, Union, overload
+from typing import Any, Iterable, Literal, Mapping, Sequence, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,8 @@ class Prepared:
     """
 
     def __init__(self, scenario: Scenario, keys: Iterable[str]) -> None:
+        if isinstance(keys, str):
+            raise TypeError(f"keys: expected a list of keys, such as [{keys!r}], not one str")
         self._scenario = scenario
         self._core = _core.Prepared(scenario._core, list(keys))
 
@@ -33,11 +35,11 @@ class Prepared:
         """Paths of the keys that vary, in the order in which ``run`` and ``map`` take their values."""
         return self._core.keys
 
-    def run(self, values: ArrayLike, *, check: bool = True) -> Run:
+    def run(self, values: Union[ArrayLike, Mapping[str, float]], *, check: bool = True) -> Run:
         """Runs the scenario with these values. Other threads continue during the run.
 
         Args:
-            values: array of shape (keys,) in SI units.
+            values: array of shape (keys,) in SI units, or a mapping or pandas.Series with a value for each key.
             check: as in :meth:`monograin.Scenario.run`.
 
         Raises:
@@ -45,22 +47,22 @@ class Prepared:
             SolverError: as in :meth:`monograin.Scenario.run`.
             ValueError: if the number of values is not that of the keys.
         """
-        numbers = np.array(values, dtype=float)
+        numbers = np.array(self._by_name(values), dtype=float)
         core = self._core.run(numbers)
         return checked(Run(core, lambda: self._scenario.replace(dict(zip(self.keys, numbers.tolist())))), check)
 
     @overload
     def map(
-        self, samples: ArrayLike, columns: Sequence[str], *, threads: int = ..., statuses: Literal[False] = ...
+        self, samples: Union[ArrayLike, Mapping[str, ArrayLike]], columns: Sequence[str], *, threads: int = ..., statuses: Literal[False] = ...
     ) -> NDArray[np.float64]: ...
 
     @overload
     def map(
-        self, samples: ArrayLike, columns: Sequence[str], *, threads: int = ..., statuses: Literal[True]
+        self, samples: Union[ArrayLike, Mapping[str, ArrayLike]], columns: Sequence[str], *, threads: int = ..., statuses: Literal[True]
     ) -> tuple[NDArray[np.float64], NDArray[np.str_]]: ...
 
     def map(
-        self, samples: ArrayLike, columns: Sequence[str], *, threads: int = 0, statuses: bool = False
+        self, samples: Union[ArrayLike, Mapping[str, ArrayLike]], columns: Sequence[str], *, threads: int = 0, statuses: bool = False
     ) -> Union[NDArray[np.float64], tuple[NDArray[np.float64], NDArray[np.str_]]]:
         """Runs the scenario once for each row of samples, on several threads.
 
@@ -68,7 +70,8 @@ class Prepared:
         energies and, if every name stands alone in ``end``, all rows before the last.
 
         Args:
-            samples: array of shape (n, keys) in SI units; for a single key also (n,).
+            samples: array of shape (n, keys) in SI units; for a single key also (n,). A pandas.DataFrame, or a mapping
+                from keys to arrays, with a column for each key: its columns are found by their names.
             columns: formulas over the columns of the history with one value each, such as ``"max(axial.force)"`` or
                 ``"end(apparent_radius) / 0.01"``. A formula has numbers, names of columns, ``+ - * / ^``, brackets,
                 ``sqrt`` and other functions, ``min``, ``max``, ``last`` (last defined value) and ``end`` (value in the
@@ -78,19 +81,20 @@ class Prepared:
 
         Returns:
             Array of shape (n, columns). A run that stops at a limit of its model, or whose solver gives up, is
-            evaluated up to there. A row is nan if the scenario refuses the values. With ``statuses``, also an array of
+            evaluated up to there. A row is nan if the scenario refuses the values, and a value is nan if the run lacks
+            a column because walls have merged into one class. With ``statuses``, also an array of
             n words: ``"complete"``, ``"stopped"``, ``"failed"`` or ``"refused"``.
 
         Raises:
-            ValueError: for a formula that cannot be read, names an unknown column or has more than one value, and for
-                samples of another shape.
+            ValueError: for a formula that cannot be read, names a column that the scenario does not have or has more
+                than one value, and for samples of another shape or without a key.
             Interrupted: on Ctrl-C, with the rows that are complete. It is a ``KeyboardInterrupt``.
         """
         if threads < 0:
             raise ValueError(f"threads = {threads}: expected 0 for one for each core, or more")
         if isinstance(columns, str):
             raise ValueError("columns: expected a list of formulas, not one str")
-        values = np.ascontiguousarray(samples, dtype=float)
+        values = np.ascontiguousarray(self._by_name(samples), dtype=float)
         if values.ndim == 1 and len(self.keys) == 1:
             values = values[:, np.newaxis]
         if values.ndim != 2 or values.shape[1] != len(self.keys):
@@ -103,6 +107,19 @@ class Prepared:
         if raised is not None:
             raise raised
         return (table, ends) if statuses else table
+
+    def _by_name(self, values: Any) -> Any:
+        """Returns values in the order of the keys if they have names; else as they are."""
+        names = getattr(values, "columns", getattr(values, "index", None)) if hasattr(values, "iloc") else None
+        if isinstance(values, Mapping):
+            names = list(values)
+        if names is None or not all(isinstance(name, str) for name in names):
+            return values
+        missing = [key for key in self.keys if key not in list(names)]
+        unknown = [name for name in names if name not in self.keys]
+        if missing or unknown:
+            raise ValueError(f"values for {', '.join(map(repr, names))}; expected the keys {', '.join(map(repr, self.keys))}")
+        return np.stack([np.asarray(values[key], dtype=float) for key in self.keys], axis=-1)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (Prepared, (self._scenario, self.keys))

@@ -55,7 +55,7 @@ class Scenario:
             ScenarioError: with every fault of the scenario, or if the file cannot be read.
         """
         scenario = cls.__new__(cls)
-        scenario._core = _core.Scenario.read(os.fspath(path))
+        scenario._core = _core.Scenario.read(os.path.abspath(path))
         return scenario
 
     def replace(self, values: Mapping[str, Any]) -> Scenario:
@@ -70,8 +70,9 @@ class Scenario:
             ScenarioError: with every fault of the new scenario.
             ValueError, TypeError: for values that no scenario can have, such as nan.
         """
-        added = [f"{key}={_toml.text_of(value, key)}" for key, value in values.items()]
-        return Scenario(self.text, origin=self.origin, overrides=[*self.overrides, *added])
+        added = {key: f"{key}={_toml.text_of(value, key)}" for key, value in values.items()}
+        kept = [text for text in self.overrides if text.partition("=")[0] not in added]
+        return Scenario(self.text, origin=self.origin, overrides=[*kept, *added.values()])
 
     @property
     def name(self) -> str:
@@ -95,7 +96,7 @@ class Scenario:
 
     @property
     def origin(self) -> str:
-        """Name of the file, as given to the constructor or to ``load``."""
+        """Name of the file, as given to the constructor; its absolute path after ``load``."""
         return self._core.origin
 
     @property
@@ -279,7 +280,9 @@ class Run:
 
     def __repr__(self) -> str:
         why = f" ({self.message})" if self.message else ""
-        return f"<Run {self.status}{why}: {len(self)} rows, {len(self.events)} events>"
+        count = len(self.warnings)
+        warned = f", {count} warning{'s' if count > 1 else ''}" if count > 0 else ""
+        return f"<Run {self.status}{why}: {len(self)} rows, {len(self.events)} events{warned}>"
 
 
 def checked(run: Run, check: bool) -> Run:

@@ -169,7 +169,7 @@ def calibrate(file: Path, folder: Optional[Path] = None, *, confidence: Optional
 
     Raises:
         ScenarioError: with every fault of calibration, scenario and data.
-        KeyboardInterrupt: on Ctrl-C; no file is written then.
+        KeyboardInterrupt: on Ctrl-C; all files of the folder are written then, or none.
     """
     level = float("nan") if confidence is None else confidence
     core = _core.calibrate(os.fspath(file), "" if folder is None else os.fspath(folder), level)
@@ -286,7 +286,7 @@ def design(file: Path, folder: Optional[Path] = None) -> Design:
     Raises:
         ScenarioError: with every fault of plan and scenario, or if the noise of a measured row is zero.
         RuntimeError: if the folder holds other files or cannot be written.
-        KeyboardInterrupt: on Ctrl-C; no file is written then.
+        KeyboardInterrupt: on Ctrl-C; all files of the folder are written then, or none.
     """
     core = _core.design(os.fspath(file), "" if folder is None else os.fspath(folder))
     if core.no_figure:

@@ -56,7 +56,10 @@ class Table:
         return self._core.row_count
 
     def __contains__(self, column: object) -> bool:
-        return column in self._core.columns
+        if not isinstance(column, str):
+            return False
+        name, bracket, unit = column.partition("[")
+        return column in self.columns or (bracket == "[" and self.units.get(name) == unit.rstrip("]"))
 
     def __getitem__(self, column: str) -> NDArray[Any]:
         """Returns a column, by its name (``"axial.force"``) or heading (``"axial.force[N]"``).

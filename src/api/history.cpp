@@ -69,7 +69,7 @@ std::vector<std::string_view> History::names() const {
 
 bool History::contains(std::string_view name) const noexcept { return table().find(name).has_value(); }
 
-const History::Column& History::column(std::string_view name) const {
+const History::Column& History::column(std::string_view name) const& {
   if (const auto found = table().find(name)) return content_->column(*found);
   const std::vector<std::string_view> candidates = names();
   const std::string meant = did_you_mean(name, candidates);

@@ -4,22 +4,51 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <stdexcept>
 
 #include "api/checked.hpp"
+#include "history/recorder.hpp"
 #include "history/run.hpp"
 #include "numerics/parallel.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/words.hpp"
+#include "scene/scene.hpp"
 #include "study/formula/expression.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
+/// True for the name of a derivative, which only a run with its sensitivities has.
+bool is_derivative(std::string_view name) { return name.starts_with("d("); }
+
+/// Advice on an unknown name: a column with a similar name, or one whose name contains other characters.
+std::string advice_on(std::string_view name, const std::vector<std::string_view>& columns) {
+  const auto is_of_names = [](char c) { return c == '_' || c == '.' || std::isalnum(static_cast<unsigned char>(c)); };
+  for (const std::string_view column : columns) {
+    if (!column.starts_with(name) || column.size() == name.size() || is_of_names(column[name.size()])) continue;
+    return fmt::format("; names with other characters than letters, digits, '_' and '.' stand in backquotes: `{}`",
+                       column);
+  }
+  return did_you_mean(name, columns);
+}
+
+/// Checks the names in a formula by the columns that runs of a scene have.
+/// @throws std::invalid_argument for an unknown name
+void check_names(const Expression& formula, std::string_view text, const Table& columns) {
+  for (const std::string_view name : formula.names()) {
+    if (is_derivative(name) || columns.find(name)) continue;
+    std::vector<std::string_view> known;
+    for (const Column& column : columns.columns()) known.push_back(column.name);
+    throw std::invalid_argument(fmt::format("'{}': unknown name '{}'{}", text, shown(name), advice_on(name, known)));
+  }
+}
+
 /// Value of a formula over a history; NaN if the history has no rows, or the value is undefined.
-/// @throws std::invalid_argument if the formula has a value for each row, or contains an unknown name
-double value_of(const Expression& formula, std::string_view text, const Table& history) {
+/// @param missing  receives the name of a column that the history lacks; the value is NaN then
+/// @throws std::invalid_argument if the formula has a value for each row
+double value_of(const Expression& formula, std::string_view text, const Table& history, std::string& missing) {
   if (history.row_count() == 0) return k_nan;
   try {
     const std::vector<double> values =
@@ -29,7 +58,9 @@ double value_of(const Expression& formula, std::string_view text, const Table& h
         });
     if (values.size() == 1) return values.front();
   } catch (const ExpressionError& error) {
-    throw std::invalid_argument(fmt::format("'{}': {}", text, error.what()));
+    if (error.unknown_name().empty()) throw std::invalid_argument(fmt::format("'{}': {}", text, error.what()));
+    missing = error.unknown_name();
+    return k_nan;
   }
   throw std::invalid_argument(
       fmt::format("'{}' has a value for each row; expected one for a run, for example max({})", text, text));
@@ -53,12 +84,14 @@ struct PreparedScenario::Content {
 
   /// The scenario with these values of the keys [SI]. @throws ScenarioError if a value is not admissible
   [[nodiscard]] CheckedScenario with(std::span<const double> values) const { return scenario.with({}, keys, values); }
+  /// The scenario with its own values.
+  [[nodiscard]] CheckedScenario as_it_is() const { return scenario.with({}); }
 
-  /// Runs the scenario with these values and leaves out parts of the history. A scenario with sensitivities is run
-  /// whole, because only a whole run has the columns of derivatives.
-  [[nodiscard]] RunRecord record(std::span<const double> values, const LeftOut& left_out) const {
+  /// Runs the scenario with these values and leaves out parts of the history. Only a whole run has the columns of
+  /// derivatives.
+  [[nodiscard]] RunRecord record(std::span<const double> values, const LeftOut& left_out, bool has_derivatives) const {
     const CheckedScenario changed = with(values);
-    return changed.sensitivities.empty() ? record_run(changed, left_out) : run_scenario(changed).record;
+    return has_derivatives ? run_scenario(changed).record : record_run(changed, left_out);
   }
 };
 
@@ -97,7 +130,12 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
       throw std::invalid_argument(fmt::format("'{}': {}", text, error.what()));
     }
   }
+  const Scene scene = make_scene(content_->as_it_is());
+  const Table columns = Recorder(*scene.system, {}).take_history();
+  for (std::size_t k = 0; k < expressions.size(); ++k) check_names(expressions[k], formulas[k], columns);
   const LeftOut left_out = not_needed_by(expressions);
+  const bool has_derivatives = std::ranges::any_of(
+      expressions, [](const Expression& formula) { return std::ranges::any_of(formula.names(), is_derivative); });
   const std::size_t count = samples.size() / width;
   MapResult result{std::vector<double>(count * formulas.size(), k_nan), std::vector<std::string>(count),
                    std::vector<std::string>(count)};
@@ -106,12 +144,15 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
     if (options.stop && thread == 0 && options.stop()) ends = true;
     if (ends) return;
     try {
-      const RunRecord record = content_->record(samples.subspan(i * width, width), left_out);
-      for (std::size_t k = 0; k < expressions.size(); ++k) {
-        result.values[i * formulas.size() + k] = value_of(expressions[k], formulas[k], record.history);
-      }
+      const RunRecord record = content_->record(samples.subspan(i * width, width), left_out, has_derivatives);
       result.status[i] = to_string(record.status);
       result.message[i] = record.message;
+      for (std::size_t k = 0; k < expressions.size(); ++k) {
+        std::string missing;
+        result.values[i * formulas.size() + k] = value_of(expressions[k], formulas[k], record.history, missing);
+        // Walls that move alike may be one class in this run alone.
+        if (!missing.empty()) result.message[i] = fmt::format("the run has no column '{}'", shown(missing));
+      }
     } catch (const ScenarioError& error) {
       result.status[i] = "refused";
       result.message[i] = error.faults().front().message;

@@ -32,7 +32,6 @@ Scenario& Scenario::set_value(std::string_view key, std::string_view value) {
 // fmt prints the shortest text that reads back as the same number. Without a fraction that is an integer in TOML, which
 // every key of a number accepts.
 Scenario& Scenario::set(std::string_view key, double value) { return set_value(key, fmt::format("{}", value)); }
-Scenario& Scenario::set(std::string_view key, int value) { return set_value(key, fmt::format("{}", value)); }
 Scenario& Scenario::set(std::string_view key, bool value) { return set_value(key, value ? "true" : "false"); }
 Scenario& Scenario::set(std::string_view key, std::string_view text) { return set_value(key, in_quotes(text)); }
 

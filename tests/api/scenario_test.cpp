@@ -10,7 +10,11 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "monograin/run.hpp"
@@ -93,6 +97,29 @@ TEST(Scenario, TakesListsSwitchesAndWords) {
   EXPECT_EQ(faults_of(scenario), "");
   const RunResult result = run(scenario);
   EXPECT_TRUE(result.history.contains("left.force"));
+}
+
+TEST(Scenario, TakesListsOfTextsAndAnyInteger) {
+  Scenario scenario = pressed_sphere();
+  const std::string word = "particle.radius";
+  scenario.set("sensitivities.keys", {"material.youngs_modulus", "particle.radius"});
+  EXPECT_EQ(scenario.overrides().back(), R"(sensitivities.keys=["material.youngs_modulus", "particle.radius"])");
+  scenario.set("sensitivities.keys", {"particle.radius"});
+  EXPECT_EQ(scenario.overrides().back(), R"(sensitivities.keys=["particle.radius"])");
+  scenario.set("sensitivities.keys", {std::string_view(word), std::string_view("material.youngs_modulus")});
+  EXPECT_EQ(scenario.overrides().back(), R"(sensitivities.keys=["particle.radius", "material.youngs_modulus"])");
+  scenario.set("output.points", std::size_t{5}).set("output.points", 7L).set("output.points", 9U);
+  EXPECT_EQ(scenario.overrides().back(), "output.points=9");
+  EXPECT_EQ(faults_of(scenario), "");
+}
+
+// A loop over a span into a history that ends with its expression would read what is gone.
+TEST(Scenario, RunInTheHeadOfALoopGivesColumnsThatOutliveIt) {
+  std::size_t rows = 0;
+  for (const double force : run(pressed_sphere()).history["axial.force"]) rows += force >= 0.0 ? 1 : 0;
+  EXPECT_EQ(rows, run(pressed_sphere()).history.row_count());
+  static_assert(std::is_same_v<decltype(std::declval<History>()["time"]), std::vector<double>>);
+  static_assert(std::is_same_v<decltype(std::declval<const History&>()["time"]), std::span<const double>>);
 }
 
 TEST(Scenario, OfATextTakesWhatWasSetInAnother) {

@@ -104,6 +104,76 @@ def test_samples_of_another_shape_are_an_error(prepared):
         prepared.map(np.ones((4, 3)), COLUMNS, threads=-1)
 
 
+def test_values_with_names_find_their_keys(prepared, samples):
+    pandas = pytest.importorskip("pandas")
+    expected = prepared.map(samples, COLUMNS)
+    frame = pandas.DataFrame(samples, columns=KEYS)[KEYS[::-1]]
+    assert_array_equal(prepared.map(frame, COLUMNS), expected)
+    assert_array_equal(prepared.map({key: frame[key].to_numpy() for key in KEYS}, COLUMNS), expected)
+    assert_array_equal(prepared.run(frame.iloc[0])["axial.force"], prepared.run(samples[0])["axial.force"])
+    assert_array_equal(prepared.map(pandas.DataFrame(samples), COLUMNS), expected)  # columns without names
+    with pytest.raises(ValueError, match="expected the keys"):
+        prepared.map(frame.rename(columns={KEYS[0]: "modulus"}), COLUMNS)
+    with pytest.raises(ValueError, match="expected the keys"):
+        prepared.map(frame[KEYS[:2]], COLUMNS)
+
+
+WALLS = """
+model = "hertz"
+particle.radius = "1 mm"
+material = { youngs_modulus = "1 GPa", poisson_ratio = 0.3 }
+loading.configuration = "walls"
+[[loading.wall]]
+name = "left"
+normal = [-1, 0, 0]
+steps = [{ displacement = "0.02 R0", duration = "1 s" }]
+[[loading.wall]]
+name = "right"
+normal = [1, 0, 0]
+gap = "10 um"
+steps = [{ displacement = "0.02 R0", duration = "1 s" }]
+"""
+
+
+def test_a_column_that_one_run_lacks_is_nan_there_alone():
+    single = mg.Scenario(WALLS).prepare(["loading.wall[1].gap"])
+    table = single.map([1e-5, 0.0, 5e-6], ["max(right.force)"])  # without a gap, left and right are one class
+    assert np.isfinite(table[[0, 2]]).all() and np.isnan(table[1]).all()
+    with pytest.raises(ValueError, match="did you mean 'right.force'"):
+        single.map(np.empty((0, 1)), ["max(right.forc)"])
+
+
+def test_names_with_other_characters_need_backquotes():
+    single = mg.scenario("oblique-die").prepare(["material.youngs_modulus"])
+    with pytest.raises(ValueError, match="backquotes"):
+        single.map([1e9], ["max(lateral-x.force)"])
+    assert single.map([1e9], ["max(`lateral-x.force`)"])[0, 0] > 0.0
+
+
+def test_one_text_is_no_list_of_keys():
+    with pytest.raises(TypeError, match="list of keys"):
+        mg.scenario("die").prepare("material.yield_stress")
+
+
+@pytest.mark.parametrize("call", ["run([5e7])", "map([[5e7]] * 100, ['max(axial.force)'])"])
+def test_a_process_may_end_while_a_thread_runs(call, tmp_path):
+    code = f"""
+        import threading, time
+        import monograin as mg
+
+        prepared = mg.scenario("die").prepare(["material.yield_stress"])
+
+        def work():
+            while True:
+                prepared.{call}
+
+        threading.Thread(target=work, daemon=True).start()
+        time.sleep(0.2)
+        """
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], cwd=tmp_path, capture_output=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
 def test_one_key_takes_a_plain_array():
     single = mg.scenario("die").prepare(["material.yield_stress"])
     table = single.map([4e7, 5e7, 6e7], ["max(axial.force)"])
