@@ -3,10 +3,13 @@
 
 #include <array>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "contacts/independent.hpp"
+#include "contacts/law_check.hpp"
 #include "system/model.hpp"
 
 namespace monograin::contacts {
@@ -22,7 +25,7 @@ inline constexpr std::array k_events{
 };
 
 /// Fills in what follows from the law: the equations, wall sets and events where none are named, and whether contacts
-/// have areas.
+/// have areas. The equations refuse a law whose functions contradict each other, by std::logic_error.
 /// @tparam law_of  function from a scenario to its law, as IndependentContacts needs it
 template <auto law_of>
 [[nodiscard]] Model model_of(Model model) {
@@ -32,8 +35,12 @@ template <auto law_of>
   model.has_contact_area = requires(const Law& law, const typename Law::Branch& b) { law.contact(b, 1.0); };
   model.bind = [](const ModelInput& input, std::vector<ContactClass> classes,
                   const Reach& reach) -> std::unique_ptr<HybridSystem> {
-    return std::make_unique<IndependentContacts<Law>>(
-        law_of(input), Settings{input.radius, reach.displacement, reach.force}, std::move(classes));
+    const Law law = law_of(input);
+    if (const std::string found = contradiction_in(law, reach.displacement / input.radius); !found.empty()) {
+      throw std::logic_error("the functions of the law do not belong together: " + found);
+    }
+    return std::make_unique<IndependentContacts<Law>>(law, Settings{input.radius, reach.displacement, reach.force},
+                                                      std::move(classes));
   };
   return model;
 }

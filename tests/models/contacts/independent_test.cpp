@@ -235,7 +235,8 @@ TEST(ModelOf, FillsInWhatFollowsFromTheLaw) {
   const std::map<std::string, OptionValue> options;
   const std::map<std::string, SampledCurve> curves;
   const ModelInput input{.radius = 3.0, .values = values, .options = options, .curves = curves};
-  const auto system = spring.bind(input, {{.name = "axial", .normals = {Eigen::Vector3d::UnitZ()}}}, {});
+  const std::vector<ContactClass> one_wall{{.name = "axial", .normals = {Eigen::Vector3d::UnitZ()}}};
+  const auto system = spring.bind(input, one_wall, {});
   EXPECT_EQ(system->classes().size(), 1u);
   EXPECT_EQ(system->unknowns().size(), 1u) << "the work alone: no force is prescribed";
 }
@@ -249,6 +250,35 @@ TEST(ModelOf, KeepsTheWallSetsAndEventsThatAModelNames) {
   const Model model = contacts::model_of<hysteretic_of>(own);
   EXPECT_EQ(model.configurations.size(), 1u);
   EXPECT_EQ(model.events.size(), 1u);
+}
+
+TEST(LawCheck, FindsFunctionsThatDoNotBelongTogether) {
+  EXPECT_EQ(contacts::contradiction_in(Spring{}, 0.1), "");
+  EXPECT_EQ(contacts::contradiction_in(Hysteretic{}, 0.0), "");
+  struct TooSteep : Spring {
+    double slope(Branch, double) const { return 5.0; }
+  };
+  EXPECT_EQ(contacts::contradiction_in(TooSteep{}, 0.1),
+            "slope(b, d) is 5 at displacement 0.02 R0, but force(b, d) grows by 1 there");
+  struct DoubleInverse : Spring {
+    double displacement(Branch, double force) const { return 2.0 * force; }
+  };
+  EXPECT_EQ(contacts::contradiction_in(DoubleInverse{}, 0.1),
+            "displacement(b, F) is 0.04 for the force at displacement 0.02 R0; expected that displacement");
+  struct NoForce : Spring {
+    double force(Branch, double) const { return std::nan(""); }
+  };
+  EXPECT_EQ(contacts::contradiction_in(NoForce{}, 0.1),
+            "force(b, d) is nan at displacement 0.02 R0; expected a finite number");
+  struct ThirdRegime : Spring {
+    int regime(Branch, bool touches) const { return touches ? 2 : 0; }
+  };
+  EXPECT_EQ(contacts::contradiction_in(ThirdRegime{}, 0.1),
+            "regime(b, touches) is 2; expected a place in k_regimes, from 0 to 1");
+  struct HalfWork : Spring {
+    double work(Branch, double d) const { return 0.25 * d * d; }
+  };
+  EXPECT_TRUE(contacts::contradiction_in(HalfWork{}, 0.1).starts_with("work(b, d) grows by 0.01 at"));
 }
 
 }  // namespace
