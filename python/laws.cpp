@@ -9,6 +9,8 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "bindings.hpp"
 #include "compressible/contact_law.hpp"
@@ -21,6 +23,8 @@
 #include "packing/law.hpp"
 #include "plastic/law.hpp"
 #include "plastic/ludwik.hpp"
+#include "system/number_text.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::python {
 namespace {
@@ -34,6 +38,21 @@ double or_nan(Value&& value) {
     return value();
   } catch (const std::domain_error&) {
     return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+/// @throws std::invalid_argument for a parameter of zero or less; NaN passes
+void require_positive(std::initializer_list<std::pair<const char*, double>> parameters) {
+  for (const auto& [name, value] : parameters) {
+    if (value <= 0.0)
+      throw std::invalid_argument(std::string(name) + " = " + number_text(value) + ": expected above 0");
+  }
+}
+
+/// @throws std::invalid_argument for what is no Poisson's ratio; NaN passes
+void require_poisson_ratio(double nu) {
+  if (nu <= -1.0 || nu > 0.5) {
+    throw std::invalid_argument("poisson_ratio = " + number_text(nu) + ": expected above -1 and up to 0.5");
   }
 }
 
@@ -186,6 +205,7 @@ py::object mdr_elastic(const std::string& quantity, const std::string& profile, 
                        const Numbers& radius, const Numbers& overlap) {
   const mdr::ElasticProfile shape = profile_named(profile);
   return py::vectorize([&](double modulus, double r, double delta) {
+    require_positive({{"modulus", modulus}, {"radius", r}});
     return or_nan([&] {
       if (quantity == "energy") return mdr::elastic_energy(shape, modulus, r, delta);
       const mdr::Contact contact = mdr::elastic_contact(shape, modulus, r, delta);
@@ -198,9 +218,12 @@ py::object mdr_plastic(const std::string& quantity, const Numbers& youngs_modulu
                        const Numbers& yield_stress, const Numbers& radius, const Numbers& overlap) {
   LastMade<mdr::Material, 3> last;
   return py::vectorize([&](double e, double nu, double y, double r, double delta) {
+    require_positive({{"youngs_modulus", e}, {"yield_stress", y}, {"radius", r}});
+    require_poisson_ratio(nu);
     const mdr::Material& material = last.get({e, nu, y}, [&] { return mdr::make_material(e, nu, y); });
     return or_nan([&] {
       if (quantity == "mean_pressure") return mdr::plastic_pressure(material, delta / r).pressure;
+      if (delta < material.yield_overlap_ratio * r * (1.0 - k_same_value)) return k_nan;
       const double c = mdr::yield_area_constant(material.yield_overlap_ratio, r);
       const mdr::Contact contact = mdr::plastic_contact(material, r, delta, c);
       return quantity == "force" ? contact.force : contact.contact_radius;
@@ -217,6 +240,7 @@ py::object mdr_pull_off(const std::string& quantity, const std::string& profile,
   const Control prescribed =
       word<Control>(control, {{"force", Control::force}, {"displacement", Control::displacement}});
   return py::vectorize([&](double modulus, double r, double energy) {
+    require_positive({{"modulus", modulus}, {"radius", r}, {"surface_energy", energy}});
     return or_nan([&] {
       const mdr::Indenter indenter = mdr::elastic_indenter(shape, r);
       const double a = mdr::critical_radius(indenter, modulus, energy, prescribed);
@@ -261,10 +285,23 @@ py::object packing_quantity(const std::string& quantity, const Numbers& packing_
 }
 
 void add_elastic(py::module_& laws) {
-  laws.def("composite_modulus", elementwise(+[](double e, double nu) { return composite_modulus(e, nu); }));
-  laws.def("hertz_force", elementwise(+[](double e, double r, double d) { return hertz_force(e, r, d); }));
-  laws.def("hertz_contact_radius", elementwise(+[](double r, double d) { return hertz_contact_radius(r, d); }));
-  laws.def("hertz_energy", elementwise(+[](double e, double r, double d) { return hertz_energy(e, r, d); }));
+  laws.def("composite_modulus", elementwise(+[](double e, double nu) {
+             require_positive({{"youngs_modulus", e}});
+             require_poisson_ratio(nu);
+             return composite_modulus(e, nu);
+           }));
+  laws.def("hertz_force", elementwise(+[](double e, double r, double d) {
+             require_positive({{"modulus", e}, {"radius", r}});
+             return hertz_force(e, r, d);
+           }));
+  laws.def("hertz_contact_radius", elementwise(+[](double r, double d) {
+             require_positive({{"radius", r}});
+             return hertz_contact_radius(r, d);
+           }));
+  laws.def("hertz_energy", elementwise(+[](double e, double r, double d) {
+             require_positive({{"modulus", e}, {"radius", r}});
+             return hertz_energy(e, r, d);
+           }));
   laws.def("line_contact_strain",
            elementwise(+[](double e, double stress) { return line_contact_under_stress(e, stress).strain; }));
   laws.def("line_contact_half_width",
@@ -279,6 +316,8 @@ void add_mdr(py::module_& laws) {
   laws.def("mdr_plastic", &mdr_plastic);
   laws.def("mdr_pull_off", &mdr_pull_off);
   laws.def("mdr_yield_overlap", elementwise(+[](double e, double nu, double y, double r) {
+             require_positive({{"youngs_modulus", e}, {"yield_stress", y}, {"radius", r}});
+             require_poisson_ratio(nu);
              return mdr::make_material(e, nu, y).yield_overlap_ratio * r;
            }));
   laws.def("mdr_power_ratio", elementwise(+[](double n) { return mdr::power_ratio(n); }));

@@ -103,6 +103,19 @@ def test_parameters_that_no_law_has_are_errors():
         laws.hardening.force(1e7, 0.5, 0.01, 1e-4, configuration="box")
 
 
+def test_elastic_and_plastic_contacts_refuse_what_no_material_has():
+    with pytest.raises(ValueError, match="modulus = -1: expected above 0"):
+        laws.hertz.force(-1.0, 0.01, 1e-3)
+    with pytest.raises(ValueError, match="poisson_ratio = 0.7"):
+        laws.mdr.plastic_force(1e9, 0.7, 5e7, 0.01, 1e-3)
+    with pytest.raises(ValueError, match="radius = 0"):
+        laws.mdr.elastic_force(1e9, [0.01, 0.0], 1e-3)
+    yields = laws.mdr.yield_overlap(1e9, 0.3, 5e7, 0.01)
+    force = laws.mdr.plastic_force(1e9, 0.3, 5e7, 0.01, np.array([0.5, 1.0, 2.0]) * yields)
+    assert np.isnan(force[0]) and (force[1:] > 0.0).all()
+    assert np.isnan(laws.hertz.force(np.nan, 0.01, 1e-3))
+
+
 def test_a_parabola_pulls_off_as_johnson_kendall_and_roberts_say():
     energy = np.array([0.1, 1.0, 10.0])
     force = laws.mdr.pull_off_force(1e9, 0.01, energy, profile="parabola")

@@ -94,7 +94,7 @@ def plastic_force(
 ) -> Any:
     """Returns the force of a fully plastic contact at its largest overlap [N] (eqs. 16, 21, 28, 36).
 
-    The apparent radius is taken as constant since first yield. The formula holds from :func:`yield_overlap` on.
+    The apparent radius is taken as constant since first yield. Below :func:`yield_overlap` the result is nan.
 
     Args:
         youngs_modulus: E [Pa], above 0.
