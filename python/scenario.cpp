@@ -6,11 +6,14 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 
 #include "api/checked.hpp"
 #include "bindings.hpp"
 #include "history/run.hpp"
+#include "history/staged_folder.hpp"
 #include "monograin/run.hpp"
+#include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
 #include "study/atlas/profile.hpp"
 
@@ -51,6 +54,14 @@ py::list parameters_of(const SoundScenario& scenario) {
   return list;
 }
 
+/// Writes the files of a run from their texts, all or none.
+void save_texts(const std::string& folder, const std::map<std::string, std::string>& texts) {
+  const Unlocked unlocked;
+  StagedFolder staged(folder);
+  for (const auto& [name, text] : texts) write_text_file(staged.path() / name, text);
+  staged.publish();
+}
+
 History profile_of(const SoundScenario& scenario, double time) {
   const Unlocked unlocked;
   return history_of(contact_profiles(scenario.checked, time));
@@ -71,6 +82,7 @@ void add_scenario(py::module_& module) {
       .def("run", &run_sound)
       .def("parameters", &parameters_of)
       .def("profile", &profile_of);
+  module.def("save_run", &save_texts);
   py::class_<RunResult>(module, "Run")
       .def_property_readonly("status", [](const RunResult& run) { return to_string(run.status); })
       .def_readonly("message", &RunResult::message)

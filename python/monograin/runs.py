@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _core, _toml
 from .errors import SolverError
-from .tables import Table
+from .tables import Table, _of_text
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from .prepared import Prepared
 
 Path = Union[str, "os.PathLike[str]"]
+
+_FILES = ("history.csv", "events.csv", "run.json")
 
 
 class Scenario:
@@ -153,17 +155,65 @@ def _restored(text: str, origin: str, overrides: tuple[str, ...]) -> Scenario:
     return Scenario(text, origin=origin, overrides=overrides)
 
 
+class _Texts:
+    """A run as the texts of its files, with the attributes of ``_core.Run``."""
+
+    def __init__(self, texts: dict[str, str]) -> None:
+        info = json.loads(texts["run.json"])
+        self.texts = texts
+        self.status: str = info["status"]
+        self.message: str = info["message"]
+        self.limit: str = info["limit"] or ""
+        self.warnings: list[str] = info["warnings"]
+        self.history = _of_text(texts["history.csv"])._core
+        self.events = _of_text(texts["events.csv"])._core
+
+    def json(self) -> str:
+        return self.texts["run.json"]
+
+    def save(self, folder: str) -> None:
+        _core.save_run(folder, self.texts)
+
+
 class Run:
     """A recorded run: its curves, its events, and how it ended.
 
     ``run["axial.force"]`` is a column of the history, see :class:`monograin.Table`. ``len(run)`` is its number of rows.
+    A run can be pickled and copied.
     """
 
-    def __init__(self, core: _core.Run, scenario: Callable[[], Scenario]) -> None:
+    def __init__(self, core: Union[_core.Run, _Texts], scenario: Callable[[], Scenario]) -> None:
         self._core = core
         self._scenario = scenario
         self._history = Table(core.history)
         self._events = Table(core.events)
+
+    @classmethod
+    def load(cls, folder: Path) -> Run:
+        """Reads a run from the files that :meth:`save` or ``monograin run`` has left.
+
+        Its ``scenario`` is made anew from ``run.json`` when it is asked for; files that it names have to be in the
+        working directory.
+
+        Raises:
+            FileNotFoundError: if the folder lacks a file of a run.
+            ValueError: if ``run.json`` is not what a run leaves.
+        """
+        texts = {}
+        for name in _FILES:
+            with open(os.path.join(folder, name), encoding="utf-8") as file:
+                texts[name] = file.read()
+        try:
+            recorded = json.loads(texts["run.json"])["scenario"]
+            core = _Texts(texts)
+        except (KeyError, TypeError, json.JSONDecodeError) as error:
+            raise ValueError(f"{os.path.join(folder, 'run.json')}: not what a run leaves") from error
+        origin = f"{recorded['name']}.toml"
+        return cls(core, lambda: Scenario(recorded["text"], origin=origin, overrides=recorded["overrides"]))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        texts = {"history.csv": self.history._core.csv(), "events.csv": self.events._core.csv(), "run.json": self._core.json()}
+        return (_of_texts, (texts, self.scenario))
 
     @property
     def scenario(self) -> Scenario:
@@ -283,6 +333,10 @@ class Run:
         count = len(self.warnings)
         warned = f", {count} warning{'s' if count > 1 else ''}" if count > 0 else ""
         return f"<Run {self.status}{why}: {len(self)} rows, {len(self.events)} events{warned}>"
+
+
+def _of_texts(texts: dict[str, str], scenario: Scenario) -> Run:
+    return Run(_Texts(texts), lambda: scenario)
 
 
 def checked(run: Run, check: bool) -> Run:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from typing import TYPE_CHECKING, Any, Iterator, Union
 
 import numpy as np
@@ -78,6 +79,9 @@ class Table:
             self._words[column] = np.asarray(labels, dtype=str)[values.astype(np.intp)]
         return self._words[column]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_of_text, (self._core.csv(),))
+
     def __iter__(self) -> Iterator[dict[str, Any]]:
         names = self.columns
         values = [self[name].tolist() for name in names]
@@ -95,3 +99,12 @@ class Table:
 
     def __repr__(self) -> str:
         return f"<Table of {len(self)} rows: {', '.join(self.columns)}>"
+
+
+def _of_text(text: str) -> Table:
+    """Returns the table in a text of CSV."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "table.csv")
+        with open(file, "w", encoding="utf-8") as output:
+            output.write(text)
+        return Table.read_csv(file)

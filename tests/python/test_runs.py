@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import gc
 import json
 import pathlib
@@ -57,6 +58,42 @@ def test_info_is_what_run_json_holds(die, tmp_path):
     assert saved["timings_s"].pop("output") > run.info["timings_s"]["output"] == 0.0
     assert {**run.info, "timings_s": saved["timings_s"]} == saved
     assert run.info["status"] == "complete"
+
+
+def expect_the_same_run(again: mg.Run, run: mg.Run) -> None:
+    for ours, theirs in ((again.history, run.history), (again.events, run.events)):
+        assert (ours.columns, ours.units, ours.header) == (theirs.columns, theirs.units, theirs.header)
+        for column in theirs.columns:
+            assert_array_equal(ours[column], theirs[column], err_msg=column)
+    assert again.info == run.info
+    assert (again.status, again.message, again.limit) == (run.status, run.message, run.limit)
+    assert again.warnings == run.warnings
+
+
+@pytest.mark.parametrize("name", ["die", "free-centre", "packing", "compressible"])
+def test_a_run_survives_pickling_and_copying(name, tmp_path):
+    run = mg.scenario(name).run()
+    for again in (pickle.loads(pickle.dumps(run)), copy.deepcopy(run)):
+        expect_the_same_run(again, run)
+        assert again.scenario == run.scenario
+    pickle.loads(pickle.dumps(run)).save(tmp_path / "again")
+    expect_the_same_run(mg.Run.load(tmp_path / "again"), run)
+    table = pickle.loads(pickle.dumps(run.history))
+    assert_array_equal(table["time"], run["time"])
+
+
+def test_a_run_of_the_program_is_loaded_and_repeated(run_program, tmp_path):
+    softer = "material.yield_stress='30 MPa'"
+    run_program("run", mg.scenario_folder() / "die.toml", "--set", softer, "-o", "out", "--quiet", cwd=tmp_path)
+    run = mg.Run.load(tmp_path / "out")
+    assert run.scenario.overrides == [softer]
+    assert_array_equal(run.scenario.run()["axial.force"], run["axial.force"])
+    assert len(run.profile(0.5)) > 100
+    with pytest.raises(FileNotFoundError):
+        mg.Run.load(tmp_path / "nothing")
+    (tmp_path / "out" / "run.json").write_text("{}")
+    with pytest.raises(ValueError, match="not what a run leaves"):
+        mg.Run.load(tmp_path / "out")
 
 
 def test_saving_refuses_a_folder_of_somebody_else(die, tmp_path):
