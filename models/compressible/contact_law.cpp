@@ -140,6 +140,9 @@ double unloading_force(const UnloadingCurve& curve, double displacement) noexcep
 }
 
 double unloading_slope(const UnloadingCurve& curve, double displacement) noexcept {
+  if (std::abs(share_of(curve, displacement)) > k_farthest_share) {
+    return curve.force * curve.exponent / curve.length * std::pow(k_farthest_share, curve.exponent - 1.0);
+  }
   return curve.force * curve.exponent / curve.length * power_of_share(curve, displacement, curve.exponent - 1.0);
 }
 

@@ -129,6 +129,12 @@ TEST(CompressibleUnloading, HasTheSlopeAndTheForceOfItsDerivatives) {
     EXPECT_NEAR(unloading_displacement(curve, force(d)), d, 1e-15) << share;
   }
   EXPECT_NEAR(recoverable_work(curve, 0.4), curve.force * curve.length / 2.3, 1e-16);
+  for (const double share : {-3.0, 2.5, 100.0}) {  // where only a guess comes
+    const double d = curve.separation() + share * curve.length;
+    const double step = 0.1 * curve.length;
+    const double growth = (unloading_force(curve, d + step) - unloading_force(curve, d - step)) / (2.0 * step);
+    EXPECT_NEAR(unloading_slope(curve, d), growth, 1e-12 * growth) << share;
+  }
 }
 
 TEST(CompressibleUnloading, OpensNoEarlierThanAtFirstTouch) {
