@@ -11,29 +11,41 @@ namespace monograin::python {
 
 namespace py = pybind11;
 
-/// Lets a thread that wants the interpreter's lock wait for the end of the process if the interpreter shuts down.
-/// Python would end the thread by unwinding its stack, which aborts the process at the first C++ frame that may not
-/// throw.
-inline void stay_if_finalizing() {
+/// True while the interpreter shuts down.
+inline bool is_finalizing() {
 #if PY_VERSION_HEX >= 0x030D0000
-  while (Py_IsFinalizing()) pause();
+  return Py_IsFinalizing() != 0;
 #else
-  while (_Py_IsFinalizing()) pause();
+  return _Py_IsFinalizing() != 0;
 #endif
 }
+
+/// Keeps a thread that Python has called from taking the interpreter's lock once the interpreter shuts down: Python
+/// would unwind the thread's stack, which aborts the process. The thread sleeps until the process ends. The thread that
+/// shuts the interpreter down may take the lock.
+class LockGuard {
+ public:
+  void wait_if_finalizing() const {
+    while (!shuts_down_ && is_finalizing()) pause();
+  }
+
+ private:
+  bool shuts_down_ = is_finalizing();  ///< this thread has the lock now
+};
 
 /// Gives up the interpreter's lock for its lifetime.
 class Unlocked {
  public:
   Unlocked() : state_(PyEval_SaveThread()) {}
   ~Unlocked() noexcept(false) {
-    stay_if_finalizing();
+    guard_.wait_if_finalizing();
     PyEval_RestoreThread(state_);
   }
   Unlocked(const Unlocked&) = delete;
   Unlocked& operator=(const Unlocked&) = delete;
 
  private:
+  LockGuard guard_;
   PyThreadState* state_;
 };
 

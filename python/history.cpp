@@ -41,6 +41,7 @@ void add_history(py::module_& module) {
       .def_property_readonly("columns", &History::names)
       .def_property_readonly("units", &units_of)
       .def_property_readonly("header", [](const History& history) { return history.table().header; })
+      .def("contains", [](const History& history, const std::string& name) { return history.contains(name); })
       .def("csv", [](const History& history) { return csv_text(history.table()); })
       .def("values", &values_of)
       .def("labels", [](const History& history, const std::string& name) { return column_of(history, name).labels; });

@@ -20,7 +20,7 @@ class SignalWatch {
     const auto now = std::chrono::steady_clock::now();
     if (!raised_ && now >= next_) {
       next_ = now + k_between_looks;
-      stay_if_finalizing();
+      guard_.wait_if_finalizing();
       const py::gil_scoped_acquire acquired;
       if (PyErr_CheckSignals() != 0) raised_.emplace();
     }
@@ -38,6 +38,7 @@ class SignalWatch {
   static constexpr std::chrono::milliseconds k_between_looks{50};
 
  private:
+  LockGuard guard_;
   std::optional<py::error_already_set> raised_;
   std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + k_between_looks;
 };

@@ -35,7 +35,8 @@ class History {
 
   [[nodiscard]] std::size_t row_count() const noexcept;
   /// Names of the columns, without units, in the order in which history.csv has them.
-  [[nodiscard]] std::vector<std::string_view> names() const;
+  [[nodiscard]] std::vector<std::string_view> names() const&;
+  [[nodiscard]] std::vector<std::string> names() const&& { return copied(names()); }  ///< copies
   /// True if there is a column of that name, given with or without its unit.
   [[nodiscard]] bool contains(std::string_view name) const noexcept;
 
@@ -51,12 +52,19 @@ class History {
   [[nodiscard]] std::vector<double> operator[](std::string_view name) const&& { return column(name).values; }
   /// Words of a column, one for each row, such as the regimes of a contact.
   /// @throws std::out_of_range for an unknown name, or a column of numbers
-  [[nodiscard]] std::vector<std::string_view> words(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string_view> words(std::string_view name) const&;
+  [[nodiscard]] std::vector<std::string> words(std::string_view name) const&& {
+    return copied(words(name));
+  }  ///< copies
 
   /// The recorded table, row by row, that this history reads.
   [[nodiscard]] const Table& table() const noexcept;
 
  private:
+  static std::vector<std::string> copied(const std::vector<std::string_view>& texts) {
+    return {texts.begin(), texts.end()};
+  }
+
   struct Content;
   std::shared_ptr<Content> content_;
 };

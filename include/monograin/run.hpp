@@ -25,7 +25,7 @@ class RunResult {
   std::vector<std::string> warnings;  ///< sentences for the user
   std::string integrator;             ///< name of the integrator that was used
   History history;                    ///< a row at each output point, and two rows around each event
-  History events;  ///< a row for each event: time, contact class, event, and the state of the history
+  History events;  ///< a row for each event: time, contact class, event, and all columns of the history
 
   /// Text of run.json: the scenario, the integrator, versions, warnings and timings.
   [[nodiscard]] std::string json() const;

@@ -33,7 +33,7 @@ constexpr double k_most_gain = 1e3;
 constexpr double k_hardly_unique = 1e-3;
 // Bulk modulus over the yield pressure from which on integrators may fail.
 constexpr double k_stiff = 1e5;
-// Share of the strength below which a negative rate of the flow's energy is round-off.
+// Share of the strength below which a negative work or dissipation of the flow is round-off.
 constexpr double k_negligible_work = 1e-9;
 
 // Indices of the unknowns.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "compressible/material_point.hpp"
@@ -65,19 +66,17 @@ constexpr std::array k_point_material{
                 k_density,
                 {},
                 true},
-    QuantityKey{
-        "relative_density",
-        "relative density at the start; not given: the reference density. With vm it stays, has no effect, and is "
-        "0.7 unless given",
-        Dimension::none,
-        k_density,
-        {},
-        true},
+    QuantityKey{"relative_density",
+                "relative density at the start; not given: the reference density (vm: no effect)",
+                Dimension::none,
+                k_density,
+                {},
+                true},
     QuantityKey{"transition_width", "size of the arc between shear line and cap; 0: a corner (dpc)", Dimension::none,
                 k_not_negative, 0.0},
 };
 
-constexpr Range k_strains{.lower = -10.0, .upper = 10.0};  // larger ones are percent
+constexpr Range k_strains{.lower = -10.0, .upper = 10.0};  // [-]; larger ones are probably percent
 
 constexpr std::array k_drives{
     DriveKey{"strain", "axial logarithmic strain, tension positive; [axial, lateral] on a strain path", Control::strain,
@@ -199,20 +198,28 @@ std::vector<Objection> point_objections(const ModelInput& input) {
   return found.empty() ? start_objections(parameters_of(input)) : found;
 }
 
-bool is_tensile(const std::optional<Prescription>& part) { return !part || part->target >= 0.0; }
-
-bool only_stretches(const PlannedStep& step) { return is_tensile(step.first) && is_tensile(step.lateral); }
+/// Greatest and least strain or stress that the program prescribes; both zero if there is none.
+std::pair<double, double> prescribed_range(const std::vector<PlannedStep>& program) {
+  std::pair<double, double> range;
+  for (const PlannedStep& step : program) {
+    for (const auto& part : {step.first, step.lateral}) {
+      if (part) range = {std::max(range.first, part->target), std::min(range.second, part->target)};
+    }
+  }
+  return range;
+}
 
 std::vector<std::string> reservations(const ModelInput& input) {
   std::vector<std::string> found;
   const bool is_vm = input.word("yield_model") == "vm";
-  if (is_vm && input.optional_material("reference_density")) {
+  const auto grows = [&](const char* key) { return input.material(key) != 0.0; };
+  if (is_vm && input.optional_material("reference_density") && (grows("eta") || grows("xi") || grows("xi1"))) {
     found.emplace_back(
         "von Mises plasticity has no density: the moduli and the strength begin as they are given, and eta, xi, xi1 "
-        "are "
-        "growth per plastic shear strain, but those of a preset are growth per relative density");
+        "are growth per plastic shear strain; those of a preset are growth per relative density");
   }
-  if (!is_vm && std::ranges::all_of(input.program, only_stretches)) {
+  const auto [greatest, least] = prescribed_range(input.program);
+  if (!is_vm && greatest > 0.0 && least == 0.0) {
     found.emplace_back("the program only stretches the material: tension is positive, compression negative");
   }
   return found;

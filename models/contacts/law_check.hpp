@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "system/number_text.hpp"
@@ -10,17 +11,17 @@
 namespace monograin::contacts {
 
 /// Looks for functions of a law that do not belong together, on the branch of a fresh contact: force, slope, inverse,
-/// work and regime. Values count as equal within a part in a thousand.
+/// work and regime. Values count as equal within a part in a thousand. Displacements at which the law has ended do not
+/// count.
 /// @param reach  largest displacement, over R0; 0 or infinite: unknown
 /// @return the first contradiction found, a sentence; empty if there is none
 template <class Law>
 [[nodiscard]] std::string contradiction_in(const Law& law, double reach) {
   constexpr double k_equal = 1e-3;
   constexpr double k_first_reach = 0.01;
-  constexpr double k_step = 1e-5;  // of differences, over the displacement beyond the opening
-  const auto differ = [](double a, double b) {
-    return !(std::abs(a - b) <= k_equal * std::max(std::abs(a), std::abs(b)));
-  };
+  constexpr double k_step = 1e-5;        // of differences, over the displacement beyond the opening
+  constexpr double k_least_step = 1e-6;  // of differences, over the displacement
+  const auto differ = [](double a, double b, double scale) { return !(std::abs(a - b) <= k_equal * std::abs(scale)); };
   const auto text = [](double value) { return number_text(value, 6); };
   const typename Law::Branch branch{};
   const auto count = static_cast<int>(Law::k_regimes.size());
@@ -36,26 +37,36 @@ template <class Law>
   if constexpr (requires { law.next(branch); }) {
     if (const auto ahead = law.next(branch)) end = std::min(end, ahead->position);
   }
+  bool is_first = true;
   for (const double share : {0.2, 0.5, 0.9}) {
     const double depth = share * (end - opening);
     const double d = opening + depth;
-    const double h = k_step * depth;
+    const double h = std::max(k_step * depth, k_least_step * std::abs(d));
     const std::string at = " at displacement " + text(d) + " R0";
-    const double force = law.force(branch, d);
-    if (!std::isfinite(force)) return "force(b, d) is " + text(force) + at + "; expected a finite number";
-    const double growth = (law.force(branch, d + h) - law.force(branch, d - h)) / (2.0 * h);
-    if (const double slope = law.slope(branch, d); differ(slope, growth)) {
-      return "slope(b, d) is " + text(slope) + at + ", but force(b, d) grows by " + text(growth) + " there";
-    }
-    if constexpr (requires { law.work(branch, d); }) {
-      const double by_work = (law.work(branch, d + h) - law.work(branch, d - h)) / (2.0 * h);
-      if (differ(by_work, force)) {
-        return "work(b, d) grows by " + text(by_work) + at + ", but force(b, d) is " + text(force) + " there";
+    try {
+      const double force = law.force(branch, d);
+      const double growth = (law.force(branch, d + h) - law.force(branch, d - h)) / (2.0 * h);
+      if (!std::isfinite(force) || !std::isfinite(growth)) {
+        // Further on, the law may have ended.
+        return is_first ? "force(b, d) is " + text(force) + at + "; expected a finite number" : std::string();
       }
-    }
-    if (!(force > 0.0)) continue;
-    if (const double inverse = law.displacement(branch, force); differ(inverse - opening, depth)) {
-      return "displacement(b, F) is " + text(inverse) + " for the force" + at + "; expected that displacement";
+      is_first = false;
+      const double slope = law.slope(branch, d);
+      if (differ(slope, growth, std::max({std::abs(slope), std::abs(growth), std::abs(force) / depth}))) {
+        return "slope(b, d) is " + text(slope) + at + ", but force(b, d) grows by " + text(growth) + " there";
+      }
+      if constexpr (requires { law.work(branch, d); }) {
+        const double by_work = (law.work(branch, d + h) - law.work(branch, d - h)) / (2.0 * h);
+        if (differ(by_work, force, std::max(std::abs(force), std::abs(growth) * depth))) {
+          return "work(b, d) grows by " + text(by_work) + at + ", but force(b, d) is " + text(force) + " there";
+        }
+      }
+      if (!(force > 0.0) || !(slope > 0.0)) continue;
+      if (const double inverse = law.displacement(branch, force); differ(inverse, d, depth)) {
+        return "displacement(b, F) is " + text(inverse) + " for the force" + at + "; expected that displacement";
+      }
+    } catch (const std::domain_error&) {  // the law has ended
+      return {};
     }
   }
   return {};

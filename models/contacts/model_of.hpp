@@ -25,7 +25,7 @@ inline constexpr std::array k_events{
 };
 
 /// Fills in what follows from the law: the equations, wall sets and events where none are named, and whether contacts
-/// have areas. The equations refuse a law whose functions contradict each other, by std::logic_error.
+/// have areas. The equations refuse a law whose functions contradict each other, by std::runtime_error.
 /// @tparam law_of  function from a scenario to its law, as IndependentContacts needs it
 template <auto law_of>
 [[nodiscard]] Model model_of(Model model) {
@@ -37,7 +37,7 @@ template <auto law_of>
                   const Reach& reach) -> std::unique_ptr<HybridSystem> {
     const Law law = law_of(input);
     if (const std::string found = contradiction_in(law, reach.displacement / input.radius); !found.empty()) {
-      throw std::logic_error("the functions of the law do not belong together: " + found);
+      throw std::runtime_error("the functions of the law do not belong together: " + found);
     }
     return std::make_unique<IndependentContacts<Law>>(law, Settings{input.radius, reach.displacement, reach.force},
                                                       std::move(classes));

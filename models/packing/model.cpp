@@ -243,8 +243,9 @@ std::vector<std::string> reservations(const ModelInput& input) {
         "yield_stress has no effect without hardening_modulus: the particles stay elastic; expected hardening_modulus "
         "= 0 for particles that are ideally plastic");
   }
-  const auto loosens = [](const PlannedStep& step) { return !step.first || step.first->target < 0.0; };
-  if (std::ranges::all_of(input.program, loosens)) {
+  const auto loosens = [](const PlannedStep& step) { return step.first && step.first->target < 0.0; };
+  const auto compacts = [](const PlannedStep& step) { return step.first && step.first->target > 0.0; };
+  if (std::ranges::any_of(input.program, loosens) && std::ranges::none_of(input.program, compacts)) {
     found.emplace_back("the program only loosens the packing: compression is positive");
   }
   return found;

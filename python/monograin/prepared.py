@@ -47,7 +47,7 @@ class Prepared:
             SolverError: as in :meth:`monograin.Scenario.run`.
             ValueError: if the number of values is not that of the keys.
         """
-        numbers = np.array(self._by_name(values), dtype=float)
+        numbers = self._in_order(values, getattr(values, "index", None)).copy()
         core = self._core.run(numbers)
         return checked(Run(core, lambda: self._scenario.replace(dict(zip(self.keys, numbers.tolist())))), check)
 
@@ -70,7 +70,7 @@ class Prepared:
         energies and, if every name stands alone in ``end``, all rows before the last.
 
         Args:
-            samples: array of shape (n, keys) in SI units; for a single key also (n,). A pandas.DataFrame, or a mapping
+            samples: array of shape (n, keys) in SI units; for a single key also (n,). A DataFrame, or a mapping
                 from keys to arrays, with a column for each key: its columns are found by their names.
             columns: formulas over the columns of the history with one value each, such as ``"max(axial.force)"`` or
                 ``"end(apparent_radius) / 0.01"``. A formula has numbers, names of columns, ``+ - * / ^``, brackets,
@@ -94,7 +94,7 @@ class Prepared:
             raise ValueError(f"threads = {threads}: expected 0 for one for each core, or more")
         if isinstance(columns, str):
             raise ValueError("columns: expected a list of formulas, not one str")
-        values = np.ascontiguousarray(self._by_name(samples), dtype=float)
+        values = self._in_order(samples, getattr(samples, "columns", None))
         if values.ndim == 1 and len(self.keys) == 1:
             values = values[:, np.newaxis]
         if values.ndim != 2 or values.shape[1] != len(self.keys):
@@ -108,17 +108,15 @@ class Prepared:
             raise raised
         return (table, ends) if statuses else table
 
-    def _by_name(self, values: Any) -> Any:
-        """Returns values in the order of the keys if they have names; else as they are."""
-        names = getattr(values, "columns", getattr(values, "index", None)) if hasattr(values, "iloc") else None
+    def _in_order(self, values: Any, names: Any) -> NDArray[np.float64]:
+        """Returns values as an array, in the order of the keys if the values or the given names of them are texts."""
         if isinstance(values, Mapping):
-            names = list(values)
-        if names is None or not all(isinstance(name, str) for name in names):
-            return values
-        missing = [key for key in self.keys if key not in list(names)]
-        unknown = [name for name in names if name not in self.keys]
-        if missing or unknown:
-            raise ValueError(f"values for {', '.join(map(repr, names))}; expected the keys {', '.join(map(repr, self.keys))}")
+            names = values
+        if names is None or callable(names) or not all(isinstance(name, str) for name in names):
+            return np.ascontiguousarray(values, dtype=float)
+        given = list(names)
+        if len(given) != len(self.keys) or set(given) != set(self.keys):
+            raise ValueError(f"values for {', '.join(map(repr, given))}; expected the keys {', '.join(map(repr, self.keys))}")
         return np.stack([np.asarray(values[key], dtype=float) for key in self.keys], axis=-1)
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -73,7 +73,9 @@ class Scenario:
             ValueError, TypeError: for values that no scenario can have, such as nan.
         """
         added = {key: f"{key}={_toml.text_of(value, key)}" for key, value in values.items()}
-        kept = [text for text in self.overrides if text.partition("=")[0] not in added]
+        kept = list(self.overrides)
+        while kept and kept[-1].partition("=")[0] in added:
+            kept.pop()
         return Scenario(self.text, origin=self.origin, overrides=[*kept, *added.values()])
 
     @property
@@ -198,6 +200,7 @@ class Run:
         Raises:
             FileNotFoundError: if the folder lacks a file of a run.
             ValueError: if ``run.json`` is not what a run leaves.
+            RuntimeError: if a table of the run is none.
         """
         texts = {}
         for name in _FILES:
@@ -205,11 +208,11 @@ class Run:
                 texts[name] = file.read()
         try:
             recorded = json.loads(texts["run.json"])["scenario"]
+            text, origin, overrides = recorded["text"], f"{recorded['name']}.toml", recorded["overrides"]
             core = _Texts(texts)
         except (KeyError, TypeError, json.JSONDecodeError) as error:
             raise ValueError(f"{os.path.join(folder, 'run.json')}: not what a run leaves") from error
-        origin = f"{recorded['name']}.toml"
-        return cls(core, lambda: Scenario(recorded["text"], origin=origin, overrides=recorded["overrides"]))
+        return cls(core, lambda: Scenario(text, origin=origin, overrides=overrides))
 
     def __reduce__(self) -> tuple[Any, ...]:
         texts = {"history.csv": self.history._core.csv(), "events.csv": self.events._core.csv(), "run.json": self._core.json()}

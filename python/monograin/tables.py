@@ -57,10 +57,7 @@ class Table:
         return self._core.row_count
 
     def __contains__(self, column: object) -> bool:
-        if not isinstance(column, str):
-            return False
-        name, bracket, unit = column.partition("[")
-        return column in self.columns or (bracket == "[" and self.units.get(name) == unit.rstrip("]"))
+        return isinstance(column, str) and self._core.contains(column)
 
     def __getitem__(self, column: str) -> NDArray[Any]:
         """Returns a column, by its name (``"axial.force"``) or heading (``"axial.force[N]"``).

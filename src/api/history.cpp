@@ -61,7 +61,7 @@ History::History(std::shared_ptr<const Table> table) : content_(std::make_shared
 
 std::size_t History::row_count() const noexcept { return table().row_count(); }
 
-std::vector<std::string_view> History::names() const {
+std::vector<std::string_view> History::names() const& {
   std::vector<std::string_view> names;
   for (const auto& column : table().columns()) names.push_back(column.name);
   return names;
@@ -77,7 +77,7 @@ const History::Column& History::column(std::string_view name) const& {
                                       meant.empty() ? "; expected one of: " + listed(candidates) : meant));
 }
 
-std::vector<std::string_view> History::words(std::string_view name) const {
+std::vector<std::string_view> History::words(std::string_view name) const& {
   const Column& found = column(name);
   if (found.labels.empty()) {
     throw std::out_of_range(

@@ -23,7 +23,7 @@ namespace {
 /// True for the name of a derivative, which only a run with its sensitivities has.
 bool is_derivative(std::string_view name) { return name.starts_with("d("); }
 
-/// Advice on an unknown name: a column with a similar name, or one whose name contains other characters.
+/// Advice on an unknown name: a column with a similar name, or one whose name needs backquotes.
 std::string advice_on(std::string_view name, const std::vector<std::string_view>& columns) {
   const auto is_of_names = [](char c) { return c == '_' || c == '.' || std::isalnum(static_cast<unsigned char>(c)); };
   for (const std::string_view column : columns) {
@@ -34,13 +34,32 @@ std::string advice_on(std::string_view name, const std::vector<std::string_view>
   return did_you_mean(name, columns);
 }
 
-/// Checks the names in a formula by the columns that runs of a scene have.
+/// Names of the columns that runs of a scenario may have: those of a scene, those of each wall alone, which other
+/// numbers may take out of its class, and the derivatives.
+std::vector<std::string> names_of_columns(const CheckedScenario& scenario) {
+  const Scene scene = make_scene(scenario);
+  const Table columns = Recorder(*scene.system, {}).take_history();
+  std::vector<std::string> names;
+  for (const Column& column : columns.columns()) {
+    names.push_back(column.name);
+    const std::size_t point = column.name.find('.');
+    if (point == std::string::npos) continue;
+    for (const WallSpec& wall : scenario.loading.walls) names.push_back(wall.name + column.name.substr(point));
+  }
+  const std::size_t count = names.size();
+  for (const SensitivityKey& key : scenario.sensitivities) {
+    for (std::size_t k = 0; k < count; ++k) names.push_back(fmt::format("d({})/d({})", names[k], key.key));
+  }
+  return names;
+}
+
+/// Checks the names in a formula by the columns that runs may have.
 /// @throws std::invalid_argument for an unknown name
-void check_names(const Expression& formula, std::string_view text, const Table& columns) {
+void check_names(const Expression& formula, std::string_view text, const std::vector<std::string>& columns) {
+  const std::vector<std::string_view> known(columns.begin(), columns.end());
   for (const std::string_view name : formula.names()) {
-    if (is_derivative(name) || columns.find(name)) continue;
-    std::vector<std::string_view> known;
-    for (const Column& column : columns.columns()) known.push_back(column.name);
+    const std::string_view without_unit = name.substr(0, name.find('['));
+    if (std::ranges::find(known, without_unit) != known.end()) continue;
     throw std::invalid_argument(fmt::format("'{}': unknown name '{}'{}", text, shown(name), advice_on(name, known)));
   }
 }
@@ -130,8 +149,7 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
       throw std::invalid_argument(fmt::format("'{}': {}", text, error.what()));
     }
   }
-  const Scene scene = make_scene(content_->as_it_is());
-  const Table columns = Recorder(*scene.system, {}).take_history();
+  const std::vector<std::string> columns = names_of_columns(content_->as_it_is());
   for (std::size_t k = 0; k < expressions.size(); ++k) check_names(expressions[k], formulas[k], columns);
   const LeftOut left_out = not_needed_by(expressions);
   const bool has_derivatives = std::ranges::any_of(
@@ -151,7 +169,8 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
         std::string missing;
         result.values[i * formulas.size() + k] = value_of(expressions[k], formulas[k], record.history, missing);
         // Walls that move alike may be one class in this run alone.
-        if (!missing.empty()) result.message[i] = fmt::format("the run has no column '{}'", shown(missing));
+        if (missing.empty() || !result.message[i].empty()) continue;
+        result.message[i] = fmt::format("the run has no column '{}'", shown(missing));
       }
     } catch (const ScenarioError& error) {
       result.status[i] = "refused";

@@ -37,7 +37,7 @@ constexpr std::size_t k_time = 0;
 constexpr std::size_t k_step = 1;
 constexpr std::size_t k_side = 2;
 
-/// Rows of a history just before and just after the events at one instant, among them ends of steps, in order. Events
+/// Rows of a history just before and just after all events at one instant; the end of a step is an event, too. Events
 /// at one instant may have rows of their own, or share them. Never empty.
 using Corner = std::vector<std::size_t>;
 
@@ -182,17 +182,23 @@ class Differences {
 
   /// @param corner  index of the corner at which the row is; the number of corners if it is at none
   [[nodiscard]] Partners partners_of(std::size_t row, std::size_t corner) const {
-    if (corner < corners_) return {partner_in(lower_, row, corner), partner_in(upper_, row, corner)};
+    if (corner < corners_) {
+      const auto count = [corner](const Segments& run) { return run.corners()[corner].size(); };
+      const bool are_alike = count(lower_.segments) == count(base_) && count(upper_.segments) == count(base_);
+      return {partner_in(lower_, row, corner, are_alike), partner_in(upper_, row, corner, are_alike)};
+    }
     if (corner < base_.corners().size()) return {};
     return {lower_.segments.row_at(base_.time(row), base_.segment(row)),
             upper_.segments.row_at(base_.time(row), base_.segment(row))};
   }
 
-  /// Row of another run at a corner. If its events have other rows than here, the first or the last one counts.
-  [[nodiscard]] std::size_t partner_in(const Variant& other, std::size_t row, std::size_t corner) const {
+  /// Row of another run at a corner.
+  /// @param are_alike  all runs have as many rows there; if not, the first or the last row of the corner counts
+  [[nodiscard]] std::size_t partner_in(const Variant& other, std::size_t row, std::size_t corner,
+                                       bool are_alike) const {
     const Corner& here = base_.corners()[corner];
     const Corner& there = other.segments.corners()[corner];
-    if (here.size() != there.size()) return base_.side(row) > 0.0 ? there.back() : there.front();
+    if (!are_alike) return base_.side(row) > 0.0 ? there.back() : there.front();
     const auto place = std::ranges::upper_bound(here, row) - here.begin();
     return there[static_cast<std::size_t>(place) - 1];
   }

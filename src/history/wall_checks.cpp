@@ -165,7 +165,7 @@ std::optional<std::string> escape_warning(const Table& history, std::span<const 
   double time = 0.0;
   for (std::size_t row = 0; row < history.row_count(); ++row) {
     for (const std::size_t column : displacements) {
-      by_walls = std::max(by_walls, std::abs(history.at(row, column)));
+      by_walls = std::max(by_walls, std::abs(history.at(row, column) - history.at(0, column)));
     }
     const Eigen::Vector3d centre(history.at(row, *x), history.at(row, *x + 1), history.at(row, *x + 2));
     if (!(centre.norm() > by_centre)) continue;

@@ -160,11 +160,14 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
     const Eigen::MatrixXd middle = noise_of_normal(normal.scaled, result.deviations);
     inverse = normal.inverse * middle * normal.inverse;
     if (!known) {
-      // The mean square of the deviations is one: they replace n by n, and p by the trace.
-      const double left = static_cast<double>(n) - (normal.inverse * middle).trace();
-      const double factor = std::sqrt(static_cast<double>(result.degrees_of_freedom) / left);
-      result.standard_deviation *= factor;
-      result.rise *= factor * factor;
+      // The mean square of the deviations is one: they replace n by n, and the number of parameters by the trace.
+      const auto fixed = static_cast<double>(p - interior.size());
+      const double left = static_cast<double>(n) - fixed - (normal.inverse * middle).trace();
+      const double squared = static_cast<double>(result.degrees_of_freedom) / left;
+      if (squared > 0.0) {
+        result.standard_deviation *= std::sqrt(squared);
+        result.rise *= squared;
+      }
     }
   }
   const double variance = result.standard_deviation * result.standard_deviation;

@@ -45,7 +45,8 @@ struct Uncertainty {
   [[nodiscard]] double half_width(const Eigen::Ref<const Eigen::VectorXd>& gradient) const;
 };
 
-/// Standard deviation s of the first n residuals, weighted by their noise. @return nan without degrees of freedom
+/// Standard deviation s of the first n residuals, as if they were weighted by their noise. @return nan without degrees
+/// of freedom
 [[nodiscard]] double deviation_of(const LeastSquaresProblem& problem, std::span<const double> residuals, std::size_t n);
 
 /// Uncertainty of the parameters of a solution.

@@ -84,11 +84,11 @@ void read_preset(Reading& reading, const Section& material, const Language& lang
   const auto presets = language.model->presets;
   const std::string name = material.text("preset");
   if (const auto preset = std::ranges::find(presets, name, &Preset::name); preset != presets.end()) {
-    reading.has_units = true;  // its values are in SI units
     for (const auto& [key, value] : preset->values) {
       const KeySpec* spec = find_key(language.material, key);
-      if (spec != nullptr && !material.has_or_misspells(key))
-        scenario.material.insert_or_assign(std::string(key), value);
+      if (spec == nullptr || material.has_or_misspells(key)) continue;
+      scenario.material.insert_or_assign(std::string(key), value);
+      if (spec->dimension != Dimension::none) reading.has_units = true;  // the value is in SI units
     }
   }
   if (name.empty() && material.has_or_misspells("preset")) return;
@@ -108,7 +108,9 @@ void read_preset(Reading& reading, const Section& material, const Language& lang
 }
 
 void read_material(Reading& reading, const Section& root, const Language& language, CheckedScenario& scenario) {
+  reading.is_of_material = true;
   const Section material(reading, root.table("material", "[material]"), language.material, language.foreign_material);
+  reading.is_of_material = false;
   for (const QuantityKey& key : language.model->material) {
     if (const auto value = material.number(key.name)) scenario.material.emplace(key.name, *value);
   }

@@ -48,6 +48,14 @@ std::optional<double> latest_end(const CheckedScenario& scenario) {
   return end;
 }
 
+/// True if the material has a surface energy: walls may then pull.
+bool is_adhesive(const CheckedScenario& scenario, const Model& model) {
+  return std::ranges::any_of(model.material, [&](const QuantityKey& key) {
+    const auto found = scenario.material.find(std::string(key.name));
+    return key.dimension == Dimension::surface_energy && found != scenario.material.end() && found->second > 0.0;
+  });
+}
+
 /// True if some wall moves outwards or pulls, and none moves inwards or is pressed on the particle.
 bool only_withdraws(const CheckedScenario& scenario) {
   std::vector<double> targets;
@@ -62,7 +70,7 @@ bool only_withdraws(const CheckedScenario& scenario) {
 std::vector<std::string> remarks_on(const CheckedScenario& scenario) {
   std::vector<std::string> remarks = scenario.doubts;
   const Model& model = *find_model(scenario.model);
-  if (model.has_walls() && only_withdraws(scenario)) {
+  if (model.has_walls() && !is_adhesive(scenario, model) && only_withdraws(scenario)) {
     remarks.emplace_back(
         "no wall moves towards the particle or is pressed on it: displacements are positive inwards, forces in "
         "compression");

@@ -18,6 +18,7 @@ using Kind = KeySpec::Kind;
 const toml::table k_empty_table;
 
 constexpr double k_soft_stress = 1e3;  // [Pa]; particles are stiffer and stronger than that
+constexpr double k_long_path = 10.0;   // over the radius
 
 bool is_identifier(std::string_view text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -310,24 +311,24 @@ void Section::check_tables(const KeySpec& spec, const toml::node& node) {
   }
 }
 
-/// Notes a number without a unit that is unlikely in SI units: a wall beyond the centre of the particle, or a stress
-/// that no solid has.
+/// Notes a number without a unit that is unlikely in SI units: a path of many radii, or a modulus or a strength that no
+/// solid has.
 void Section::doubt_missing_unit(const KeySpec& spec, const toml::node& node, double value) {
   const double size = std::abs(value);
   const SourceLocation place = place_of(node.source(), origin_.place);
   const std::string written =
       fmt::format("{} = {}{}", spec.name, shown(node), place.line > 0 ? fmt::format(" (line {})", place.line) : "");
-  if (spec.dimension == Dimension::length && spec.knows_initial_radius && size > reading_.initial_radius) {
+  if (spec.dimension == Dimension::length && spec.knows_initial_radius &&
+      size > k_long_path * reading_.initial_radius) {
     reading_.doubtful_lengths.push_back(
-        fmt::format("{} has no unit and is taken as {:.6g} m, {:.3g} times the radius; "
-                    "if it is meant otherwise, write the unit, such as \"{} R0\"",
+        fmt::format("{} has no unit and is taken as {:.6g} m, {:.3g} times the radius; if another unit is meant, write "
+                    "it: \"{} R0\"",
                     written, value, value / reading_.initial_radius, shown(node)));
   }
-  if (spec.dimension == Dimension::stress && size > 0.0 && size < k_soft_stress) {
+  if (reading_.is_of_material && spec.dimension == Dimension::stress && size > 0.0 && size < k_soft_stress) {
     reading_.doubtful_stresses.push_back(
-        fmt::format("{} has no unit and is taken as {:.6g} Pa; if it is meant "
-                    "otherwise, write the unit, such as \"{} MPa\"",
-                    written, value, shown(node)));
+        fmt::format("{} has no unit and is taken as {:.6g} Pa; if another unit is meant, write it: \"{} MPa\"", written,
+                    value, shown(node)));
   }
 }
 

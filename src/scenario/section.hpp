@@ -21,6 +21,7 @@ struct Reading {
   FaultList& faults;
   double initial_radius = 1.0;  ///< [m]
   bool has_units = false;       ///< some quantity of the file, no time and none in R0, is written with a unit
+  bool is_of_material = false;  ///< the section that is read has constants of the material
   /// Numbers without a unit whose value in SI units is unlikely, a sentence each.
   std::vector<std::string> doubtful_lengths{};
   std::vector<std::string> doubtful_stresses{};

@@ -278,10 +278,13 @@ class LayoutFinder {
     return std::nullopt;
   }
 
-  /// True if the row above the data has texts only, half as many as the data have cells: "s,N" above "0,5,1,25".
+  /// True if the row above the data has texts only, half as many as the data have cells, and these have no decimal
+  /// points: "s,N" above "0,5,1,25".
   /// @param first  index of the first row of data
   [[nodiscard]] bool splits_decimals(std::size_t first) const {
-    if (dialect_.separator != ',' || first == 0 || first == rows_.size()) return false;
+    if (given_.decimal || dialect_.separator != ',' || first == 0 || first == rows_.size()) return false;
+    const auto has_point = [](const Cell& cell) { return cell.text.find('.') != std::string_view::npos; };
+    if (std::ranges::any_of(rows_[first].cells, has_point)) return false;
     const SampledRow& above = rows_[first - 1];
     return above.numbers == 0 && above.filled > 1 && 2 * above.filled == width_;
   }

@@ -396,6 +396,7 @@ keys = ["particle.radius"]
     const std::vector<double> force = column(run, "axial.force");
     const std::vector<double> by_radius = column(run, "d(axial.force)/d(particle.radius)");
     const double largest = *std::ranges::max_element(force);
+    EXPECT_GE(std::ranges::count(column(run, "time"), 1.0), 4) << "the end of the step and the reversal have own rows";
     for (std::size_t row = 0; row < force.size(); ++row) {
       EXPECT_NEAR(by_radius[row] * 0.01 / largest, 2.0 * force[row] / largest, 1e-6) << integrator << ", row " << row;
     }

@@ -162,7 +162,7 @@ TEST(Intervals, HoldTheTruthWhereWeightsAreNotThoseOfTheNoise) {
     if (holds(uncertainty.half_width(1))) ++held;
     if (holds(fitted(line.problem).uncertainty.half_width(1))) ++held_without;
   }
-  // 95 % of 1000, with a standard deviation of 6.9
+  // 95 % of 1000, give or take three standard deviations of 6.9
   EXPECT_NEAR(held, 950, 21);
   EXPECT_LT(held_without, 850);
 }

@@ -116,6 +116,11 @@ def test_values_with_names_find_their_keys(prepared, samples):
         prepared.map(frame.rename(columns={KEYS[0]: "modulus"}), COLUMNS)
     with pytest.raises(ValueError, match="expected the keys"):
         prepared.map(frame[KEYS[:2]], COLUMNS)
+    with pytest.raises(ValueError, match="expected the keys"):
+        prepared.map(frame[[*KEYS, KEYS[0]]], COLUMNS)
+    single = mg.scenario("die").prepare(KEYS[1:2])
+    series = pandas.Series([4e7, 5e7], index=["a", "b"])
+    assert_array_equal(single.map(series, COLUMNS[:1]), single.map([4e7, 5e7], COLUMNS[:1]))
 
 
 WALLS = """
@@ -143,6 +148,21 @@ def test_a_column_that_one_run_lacks_is_nan_there_alone():
         single.map(np.empty((0, 1)), ["max(right.forc)"])
 
 
+def test_a_wall_has_its_columns_even_where_the_scenario_itself_merges_it():
+    merged = mg.Scenario(WALLS.replace('gap = "10 um"', 'gap = "0 um"')).prepare(["loading.wall[1].gap"])
+    assert np.isfinite(merged.map([1e-5], ["max(right.force)"])).all()
+
+
+def test_names_of_derivatives_are_checked():
+    derived = mg.scenario("die").replace({"sensitivities.keys": ["material.yield_stress"]})
+    prepared = derived.prepare(["material.youngs_modulus"])
+    slope = "end(`d(axial.force)/d(material.yield_stress)`)"
+    assert prepared.map([1e9], [slope])[0, 0] > 0.0
+    for wrong in ("axial.forc)/d(material.yield_stress", "axial.force)/d(material.poisson_ratio"):
+        with pytest.raises(ValueError, match="unknown name"):
+            prepared.map([1e9], [f"end(`d({wrong})`)"])
+
+
 def test_names_with_other_characters_need_backquotes():
     single = mg.scenario("oblique-die").prepare(["material.youngs_modulus"])
     with pytest.raises(ValueError, match="backquotes"):
@@ -153,6 +173,26 @@ def test_names_with_other_characters_need_backquotes():
 def test_one_text_is_no_list_of_keys():
     with pytest.raises(TypeError, match="list of keys"):
         mg.scenario("die").prepare("material.yield_stress")
+
+
+def test_a_run_while_the_interpreter_ends_comes_to_its_end(tmp_path):
+    code = """
+        import os
+        import monograin as mg
+
+        class Late:
+            def __init__(self):
+                self.scenario = mg.scenario("hertz")
+                self.cycle = self  # so that only the end of the interpreter deletes it
+
+            def __del__(self):
+                os.write(1, self.scenario._core.run().status.encode())
+
+        late = Late()
+        """
+    code = textwrap.dedent(code)
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, timeout=60, text=True)
+    assert (done.returncode, done.stdout) == (0, "complete")
 
 
 @pytest.mark.parametrize("call", ["run([5e7])", "map([[5e7]] * 100, ['max(axial.force)'])"])

@@ -133,6 +133,16 @@ def test_replacing_is_editing_the_text(die):
     assert replaced.replace({"output.points": 10}).overrides[:2] == replaced.overrides
 
 
+def test_replacing_again_keeps_the_order_and_does_not_pile_up():
+    step = {"displacement": "0.1 R0", "duration": "1 s"}
+    scenario = mg.scenario("hertz").replace({"loading.steps": [step]})
+    for index in (1, 2, 1):
+        scenario = scenario.replace({f"loading.steps[{index}]": step})
+    for _ in range(3):
+        scenario = scenario.replace({"material.youngs_modulus": 1e9, "material.poisson_ratio": 0.2})
+    assert len(scenario.overrides) == 6
+
+
 def test_every_kind_of_value_can_be_replaced():
     scenario = mg.scenario("die").replace(
         {

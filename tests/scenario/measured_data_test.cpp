@@ -249,6 +249,8 @@ TEST(MachineFiles, WithCommasBetweenCellsAndInNumbersAreRefused) {
                   "expected another separator, or cells in quotes"});
   EXPECT_EQ(read("Weg,Kraft\n\"0,5\",\"1,25\"\n", {}, numbered).data.columns[1].values, std::vector{1.25});
   EXPECT_EQ(read("a,b,c\n0,5,1,25\n1,5,2,25\n", {}, numbered).faults, Cells()) << "three texts are a preamble";
+  EXPECT_EQ(read("Operator,Smith\n0.01,2.5,0.1,3.0\n", {}, numbered).faults, Cells()) << "decimal points";
+  EXPECT_EQ(read(text, {.decimal = '.'}, numbered).data.columns[1].values, (std::vector{5.0, 5.0})) << "as it is told";
 }
 
 TEST(MachineFiles, MayHaveNoHeadings) {

@@ -23,6 +23,9 @@ TEST(Remarks, SayThatNoWallMovesInwards) {
   EXPECT_EQ(remarks_of(with_line(12, "displacement = \"-0.1 R0\"")), outwards);
   EXPECT_EQ(remarks_of(with_line(12, "displacement = \"0.1 R0\"")), Lines());
   EXPECT_EQ(remarks_of(with_line(12, "displacement = 0")), Lines()) << "nothing moves";
+  const std::string adhesive = with_line(8, "yield_stress = \"50 MPa\"\nsurface_energy = \"1 J/m^2\"");
+  EXPECT_EQ(remarks_on(parse_scenario(adhesive, "a.toml", {"loading.steps[0].displacement=-1e-6"})), Lines())
+      << "pulled off from first touch";
   EXPECT_EQ(remarks_of(with_more("[[loading.steps]]\ndisplacement = \"-0.1 R0\"\nduration = 1\n")), Lines())
       << "unloading beyond first touch";
   EXPECT_EQ(remarks_of(with_line(12, "force = \"1 N\"")), Lines());
@@ -39,8 +42,22 @@ TEST(Remarks, SayThatAPackingStaysElasticOrIsOnlyLoosened) {
   EXPECT_TRUE(elastic.front().starts_with("yield_stress has no effect without hardening_modulus")) << elastic.front();
   EXPECT_EQ(remarks_of(packing("yield_stress = \"0.3 MPa\"\nhardening_modulus = 0", compaction)), Lines());
   EXPECT_EQ(remarks_of(packing("", compaction)), Lines());
+  EXPECT_EQ(remarks_of(packing("", "hold = true")), Lines());
   EXPECT_EQ(remarks_of(packing("", "strain = -0.15")),
             Lines{"the program only loosens the packing: compression is positive"});
+}
+
+TEST(Remarks, SayThatAPowderIsOnlyStretched) {
+  const auto powder = [](const std::string& material, const std::string& step) {
+    return "model = \"material-point\"\n[material]\npreset = \"Base case\"\n" + material +
+           "\n[loading]\nconfiguration = \"die\"\nsteps = [{ " + step + ", duration = 1 }]\n";
+  };
+  EXPECT_EQ(remarks_of(powder("", "strain = 0.1")),
+            Lines{"the program only stretches the material: tension is positive, compression negative"});
+  EXPECT_EQ(remarks_of(powder("", "strain = 0")), Lines());
+  EXPECT_EQ(remarks_of(powder("", "strain = -0.1")), Lines());
+  EXPECT_EQ(remarks_of(powder("yield_model = \"vm\"", "strain = 0.1")).size(), 1U) << "growth per density";
+  EXPECT_EQ(remarks_of(powder("yield_model = \"vm\"\neta = 0\nxi = 0\nxi1 = 0", "strain = 0.1")), Lines());
 }
 
 }  // namespace

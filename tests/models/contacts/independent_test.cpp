@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -270,6 +271,16 @@ TEST(LawCheck, FindsFunctionsThatDoNotBelongTogether) {
   };
   EXPECT_EQ(contacts::contradiction_in(NoForce{}, 0.1),
             "force(b, d) is nan at displacement 0.02 R0; expected a finite number");
+  struct Ends : Spring {
+    double force(Branch, double d) const { return d < 0.06 ? d : throw std::domain_error("the end"); }
+  };
+  EXPECT_EQ(contacts::contradiction_in(Ends{}, 0.1), "") << "the run itself ends there";
+  struct Plateau : Spring {
+    double force(Branch, double d) const { return 0.3 + 1e-12 * std::sin(1e9 * d); }
+    double slope(Branch, double) const { return 0.0; }
+    double work(Branch, double d) const { return 0.3 * d; }
+  };
+  EXPECT_EQ(contacts::contradiction_in(Plateau{}, 0.1), "") << "round-off";
   struct ThirdRegime : Spring {
     int regime(Branch, bool touches) const { return touches ? 2 : 0; }
   };
