@@ -315,17 +315,20 @@ void Section::check_tables(const KeySpec& spec, const toml::node& node) {
 /// solid has.
 void Section::doubt_missing_unit(const KeySpec& spec, const toml::node& node, double value) {
   const double size = std::abs(value);
+  const bool is_far =
+      spec.dimension == Dimension::length && spec.knows_initial_radius && size > k_long_path * reading_.initial_radius;
+  const bool is_soft =
+      reading_.is_of_material && spec.dimension == Dimension::stress && size > 0.0 && size < k_soft_stress;
+  if (!is_far && !is_soft) return;
   const SourceLocation place = place_of(node.source(), origin_.place);
   const std::string written =
       fmt::format("{} = {}{}", spec.name, shown(node), place.line > 0 ? fmt::format(" (line {})", place.line) : "");
-  if (spec.dimension == Dimension::length && spec.knows_initial_radius &&
-      size > k_long_path * reading_.initial_radius) {
+  if (is_far) {
     reading_.doubtful_lengths.push_back(
         fmt::format("{} has no unit and is taken as {:.6g} m, {:.3g} times the radius; if another unit is meant, write "
                     "it: \"{} R0\"",
                     written, value, value / reading_.initial_radius, shown(node)));
-  }
-  if (reading_.is_of_material && spec.dimension == Dimension::stress && size > 0.0 && size < k_soft_stress) {
+  } else {
     reading_.doubtful_stresses.push_back(
         fmt::format("{} has no unit and is taken as {:.6g} Pa; if another unit is meant, write it: \"{} MPa\"", written,
                     value, shown(node)));
