@@ -3,10 +3,12 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <optional>
 
 #include "bindings.hpp"
 #include "history/compare.hpp"
 #include "interruptible.hpp"
+#include "scenario/text_file.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/identify/identify_files.hpp"
 #include "study/sweep/bands.hpp"
@@ -18,16 +20,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// @param text  text of the study; none: that of the file is read
+NamedText source_of(const std::string& file, std::optional<std::string> text, std::string_view expected) {
+  return text ? NamedText{.text = std::move(*text), .file = file} : read_named_text(file, expected);
+}
+
+Sweep sweep_of(const std::string& file, const std::optional<std::string>& text) {
+  const Unlocked unlocked;
+  return parse_sweep(source_of(file, text, "a sweep file"));
+}
+
 /// Runs one shard of a sweep, and writes its bands once all runs are there.
 /// @return the folder of the results, and the number of runs that it still lacks
-py::tuple sweep(const std::string& file, const std::string& output, int threads, std::size_t shard,
-                std::size_t shard_count) {
+py::tuple sweep(const std::string& file, const std::optional<std::string>& text, const std::string& output, int threads,
+                std::size_t shard, std::size_t shard_count) {
   if (threads < 0) throw std::invalid_argument("threads: expected 0 for one for each core, or more");
   if (shard < 1 || shard > shard_count) throw std::invalid_argument("shard: expected (i, n) with i from 1 to n");
-  const Sweep plan = [&] {
-    const Unlocked unlocked;
-    return read_sweep(file);
-  }();
+  const Sweep plan = sweep_of(file, text);
   const fs::path folder = output.empty() ? fs::path("runs") / plan.name : fs::path(output);
   const SweepOutcome outcome = run_interruptibly([&](const std::atomic<bool>& stop) {
     return run_sweep(plan, {.folder = folder,
@@ -45,11 +54,12 @@ py::tuple sweep(const std::string& file, const std::string& output, int threads,
 }
 
 /// Runs the missing runs of a sweep and writes its sensitivities. @return the folder of the results
-std::string sensitivity(const std::string& file, const std::string& output, int threads, double confidence) {
-  const py::tuple swept = sweep(file, output, threads, 1, 1);
+std::string sensitivity(const std::string& file, const std::optional<std::string>& text, const std::string& output,
+                        int threads, double confidence) {
+  const py::tuple swept = sweep(file, text, output, threads, 1, 1);
   const std::string folder = swept[0].cast<std::string>();
+  const Sweep plan = sweep_of(file, text);
   const Unlocked unlocked;
-  const Sweep plan = read_sweep(file);
   static_cast<void>(write_sensitivities(plan, sensitivities_of(plan, folder, confidence), folder));
   return folder;
 }
@@ -69,10 +79,11 @@ struct Fitted {
 /// Runs a calibration.
 /// @param output      folder for the files that the program writes; empty: none are written
 /// @param confidence  confidence level in (0, 1); NaN: the level of the calibration file
-Fitted calibrate_file(const std::string& file, const std::string& output, double confidence) {
+Fitted calibrate_source(const std::string& file, const std::optional<std::string>& text, const std::string& output,
+                        double confidence) {
   Calibration calibration = [&] {
     const Unlocked unlocked;
-    return read_calibration(file);
+    return parse_calibration(source_of(file, text, "a calibration file"));
   }();
   if (!std::isnan(confidence)) {
     if (!(confidence > 0.0 && confidence < 1.0)) throw std::invalid_argument("confidence: expected a number in (0, 1)");
@@ -114,10 +125,10 @@ struct Designed {
 
 /// Evaluates a plan of an experiment.
 /// @param output  folder for the files that the program writes; empty: none are written
-Designed design_file(const std::string& file, const std::string& output) {
+Designed design_source(const std::string& file, const std::optional<std::string>& text, const std::string& output) {
   const ExperimentPlan plan = [&] {
     const Unlocked unlocked;
-    return read_experiment_plan(file);
+    return parse_experiment_plan(source_of(file, text, "a plan of an experiment"));
   }();
   return run_interruptibly([&](const std::atomic<bool>& stop) {
     const IdentifyResult result = identify(plan, [&stop] {
@@ -174,7 +185,7 @@ void add_studies(py::module_& module) {
       .def_readonly("warnings", &Fitted::warnings)
       .def_readonly("no_figure", &Fitted::no_figure)
       .def_readonly("fit", &Fitted::fit);
-  module.def("calibrate", &calibrate_file);
+  module.def("calibrate", &calibrate_source);
   py::class_<Designed>(module, "Designed")
       .def_readonly("name", &Designed::name)
       .def_readonly("programs", &Designed::programs)
@@ -186,7 +197,7 @@ void add_studies(py::module_& module) {
       .def_readonly("text", &Designed::text)
       .def_readonly("no_figure", &Designed::no_figure)
       .def_readonly("table", &Designed::table);
-  module.def("design", &design_file);
+  module.def("design", &design_source);
   module.def("compare_tables", [](const History& a, const History& b, const std::string& x, const std::string& y) {
     return as_python(compare(a, b, x, y));
   });

@@ -2,27 +2,35 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import tempfile
 import warnings
-from typing import Any, NamedTuple, Optional, Union
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, _toml
 from .runs import Path, Run
 from .tables import Table
 
+if TYPE_CHECKING:
+    import pandas
+
+Source = Union[Path, Mapping[str, Any]]
+
 
 def sweep(
-    file: Path, folder: Optional[Path] = None, *, threads: int = 0, shard: tuple[int, int] = (1, 1)
+    source: Source, folder: Optional[Path] = None, *, threads: int = 0, shard: tuple[int, int] = (1, 1)
 ) -> Optional[Table]:
-    """Runs the sweep of a file on several threads, as ``monograin sweep`` does. Runs already in the folder are kept.
+    """Runs a sweep on several threads, as ``monograin sweep`` does. Runs already in the folder are kept.
 
     Args:
-        file: a sweep file (TOML).
-        folder: folder of the results; ``runs/NAME`` if None.
+        source: a sweep file (TOML), or a dict of the same structure, whose file names are relative to the current
+            folder.
+        folder: folder of the results; if None ``runs/NAME``, for a dict ``runs/sweep``.
         threads: number of threads; 0: one for each core.
         shard: (i, n) to do only every n-th run, from the i-th on. The last of n processes that share a folder merges
             the results.
@@ -37,16 +45,16 @@ def sweep(
         RuntimeError: if the folder holds other files or cannot be written.
         KeyboardInterrupt: on Ctrl-C. Complete runs stay in the folder, and the next call does the others.
     """
-    where, missing = _core.sweep(os.fspath(file), "" if folder is None else os.fspath(folder), threads, *shard)
+    where, missing = _core.sweep(*_named_text(source, "sweep.toml"), _folder(folder), threads, *shard)
     return Table.read_csv(os.path.join(where, "results.csv")) if missing == 0 else None
 
 
-def sensitivity(file: Path, folder: Optional[Path] = None, *, threads: int = 0, confidence: float = 0.95) -> Table:
+def sensitivity(source: Source, folder: Optional[Path] = None, *, threads: int = 0, confidence: float = 0.95) -> Table:
     """Computes how much each key contributes to the spread of results, as ``monograin sensitivity`` does.
 
     Args:
-        file: a sweep file (TOML) of design ``saltelli`` or ``morris``, with formulas of ``results``.
-        folder: folder of the results; ``runs/NAME`` if None. Runs already in it are not repeated.
+        source: a sweep as for :func:`sweep`, of design ``saltelli`` or ``morris``, with formulas of ``results``.
+        folder: folder of the results, as for :func:`sweep`. Runs already in it are not repeated.
         threads: number of threads; 0: one for each core.
         confidence: level of the two-sided bootstrap intervals, between 0 and 1.
 
@@ -63,7 +71,7 @@ def sensitivity(file: Path, folder: Optional[Path] = None, *, threads: int = 0, 
     """
     if not 0.0 < confidence < 1.0:
         raise ValueError("confidence: expected a number in (0, 1)")
-    where = _core.sensitivity(os.fspath(file), "" if folder is None else os.fspath(folder), threads, confidence)
+    where = _core.sensitivity(*_named_text(source, "sweep.toml"), _folder(folder), threads, confidence)
     return Table.read_csv(os.path.join(where, "sensitivity.csv"))
 
 
@@ -157,22 +165,26 @@ class Calibration:
         return f"<Calibration {self._core.name!r}: {', '.join(self.parameters)}>"
 
 
-def calibrate(file: Path, folder: Optional[Path] = None, *, confidence: Optional[float] = None) -> Calibration:
+def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Optional[float] = None) -> Calibration:
     """Fits parameters of a scenario to measured data, as ``monograin calibrate`` does.
 
     A bad fit, and a figure that cannot be drawn, give a ``RuntimeWarning``.
 
     Args:
-        file: a calibration file (TOML).
+        source: a calibration file (TOML), or a dict of the same structure, whose file names are relative to the current
+            folder. In a dict, the ``file`` of data may also be the data: a :class:`Table`, a ``pandas.DataFrame``, or a
+            dict from headings to arrays, such as ``{"displacement[mm]": d, "force[N]": f}``. A nan is a missing cell.
         folder: folder for the files that the program writes; None: none are written.
         confidence: level of the intervals in (0, 1); None: the level of the file, or 0.95.
 
     Raises:
         ScenarioError: with every fault of calibration, scenario and data.
+        ValueError: for data whose columns are not of equal length.
         KeyboardInterrupt: on Ctrl-C; all files of the folder are written then, or none.
     """
     level = float("nan") if confidence is None else confidence
-    core = _core.calibrate(os.fspath(file), "" if folder is None else os.fspath(folder), level)
+    with _data_as_files(source) as complete:
+        core = _core.calibrate(*_named_text(complete, "calibration.toml"), _folder(folder), level)
     if core.no_figure:
         warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=2)
     for warning in core.warnings:
@@ -272,7 +284,7 @@ class Design:
         return f"<Design {self._core.name!r}: {', '.join(self._core.programs)}>"
 
 
-def design(file: Path, folder: Optional[Path] = None) -> Design:
+def design(source: Source, folder: Optional[Path] = None) -> Design:
     """Computes the expected errors of the parameters from a planned experiment, as ``monograin design`` does.
 
     The covariance is the inverse of the Fisher information (Fedorov, 1972). This assumes that the law is right and
@@ -280,7 +292,8 @@ def design(file: Path, folder: Optional[Path] = None) -> Design:
     ``RuntimeWarning``.
 
     Args:
-        file: a plan (TOML): scenario, free parameters, programs with the noise of their measurements.
+        source: a plan (TOML), or a dict of the same structure: scenario, free parameters, programs with the noise of
+            their measurements.
         folder: folder for the files that the program writes; None: none are written.
 
     Raises:
@@ -288,7 +301,7 @@ def design(file: Path, folder: Optional[Path] = None) -> Design:
         RuntimeError: if the folder holds other files or cannot be written.
         KeyboardInterrupt: on Ctrl-C; all files of the folder are written then, or none.
     """
-    core = _core.design(os.fspath(file), "" if folder is None else os.fspath(folder))
+    core = _core.design(*_named_text(source, "design.toml"), _folder(folder))
     if core.no_figure:
         warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=2)
     return Design(core)
@@ -361,6 +374,52 @@ def compare(a: Union[Run, Table, Path], b: Union[Run, Table, Path], *, x: str = 
         more_curves, more_gaps = _core.compare_events(events_a._core, events_b._core)
         curves, gaps = curves + more_curves, gaps + more_gaps
     return Comparison([CurveDifference(*curve) for curve in curves], [Gap(*gap) for gap in gaps])
+
+
+def _folder(folder: Optional[Path]) -> str:
+    return "" if folder is None else os.fspath(folder)
+
+
+def _named_text(source: Source, name: str) -> tuple[str, Optional[str]]:
+    """Returns the name of a study in messages, and its text; None for a file."""
+    if isinstance(source, Mapping):
+        return name, _toml.document(source)
+    return os.fspath(source), None
+
+
+@contextlib.contextmanager
+def _data_as_files(source: Source) -> Iterator[Source]:
+    """Yields a calibration whose data in memory are files, as long as the context lasts."""
+    data = source.get("data") if isinstance(source, Mapping) else None
+    if not isinstance(source, Mapping) or data is None:
+        yield source
+        return
+    with tempfile.TemporaryDirectory(prefix="monograin-") as folder:
+
+        def named(curve: Any, file: str) -> Any:
+            values = curve.get("file") if isinstance(curve, Mapping) else None
+            if values is None or isinstance(values, (str, os.PathLike)):
+                return curve
+            path = os.path.join(folder, file)
+            with open(path, "w", encoding="utf-8") as output:
+                output.write(_csv(values))
+            return {**curve, "file": path}
+
+        if isinstance(data, (list, tuple)):
+            yield {**source, "data": [named(curve, f"data-{k + 1}.csv") for k, curve in enumerate(data)]}
+        else:
+            yield {**source, "data": named(data, "data.csv")}
+
+
+def _csv(data: Union[Table, Mapping[str, Any], pandas.DataFrame]) -> str:
+    """Returns columns as a CSV text."""
+    if isinstance(data, Table):
+        return data._core.csv()
+    columns = [np.asarray(data[heading], dtype=float) for heading in data]
+    if any(column.shape != columns[0].shape or column.ndim != 1 for column in columns):
+        raise ValueError(f"data of shapes {[column.shape for column in columns]}; expected columns of equal length")
+    rows = (["" if np.isnan(value) else repr(float(value)) for value in row] for row in zip(*columns))
+    return "".join(",".join(cells) + "\n" for cells in ([f'"{heading}"' for heading in data], *rows))
 
 
 def _history(source: Union[Run, Table, Path]) -> Table:

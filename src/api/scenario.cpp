@@ -66,9 +66,8 @@ std::vector<Parameter> Scenario::parameters() const {
 }
 
 Scenario read_scenario(const std::filesystem::path& file) {
-  auto [text, problem] = read_text_file(file, k_largest_text, FileKind::any);
-  if (!problem.empty()) throw_fault({file.string()}, problem + "; expected a scenario file");
-  return Scenario::parse(std::move(text), name_of_file(file).string());
+  auto [text, name] = read_named_text(file, "a scenario file");
+  return Scenario::parse(std::move(text), name.string());
 }
 
 }  // namespace monograin

@@ -19,13 +19,6 @@
 namespace monograin {
 namespace {
 
-std::string read_file(const std::filesystem::path& file, FileKind kind) {
-  // The parser refuses a text beyond the limit.
-  auto [text, problem] = read_text_file(file, k_largest_text, kind);
-  if (problem.empty()) return std::move(text);
-  throw_fault({name_of_file(file, kind).string()}, problem + "; expected a scenario file");
-}
-
 std::string name_of(const std::string& origin) {
   const std::string stem = std::filesystem::path(origin).stem().string();
   return stem.empty() ? "scenario" : stem;
@@ -218,7 +211,8 @@ Step::Kind ramp_of(Control control) noexcept {
 
 CheckedScenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                               FileKind kind) {
-  return parse_scenario(read_file(file, kind), name_of_file(file, kind).string(), overrides);
+  auto [text, name] = read_named_text(file, "a scenario file", kind);
+  return parse_scenario(std::move(text), name.string(), overrides);
 }
 
 CheckedScenario parse_scenario(std::string_view text, const std::string& origin,

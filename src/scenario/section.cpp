@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scenario/document.hpp"
+#include "scenario/overrides.hpp"
 #include "scenario/units.hpp"
 #include "scenario/words.hpp"
 
@@ -321,8 +322,9 @@ void Section::doubt_missing_unit(const KeySpec& spec, const toml::node& node, do
       reading_.is_of_material && spec.dimension == Dimension::stress && size > 0.0 && size < k_soft_stress;
   if (!is_far && !is_soft) return;
   const SourceLocation place = place_of(node.source(), origin_.place);
+  const bool has_line = place.line > 0 && !is_override(place);
   const std::string written =
-      fmt::format("{} = {}{}", spec.name, shown(node), place.line > 0 ? fmt::format(" (line {})", place.line) : "");
+      fmt::format("{} = {}{}", spec.name, shown(node), has_line ? fmt::format(" (line {})", place.line) : "");
   if (is_far) {
     reading_.doubtful_lengths.push_back(
         fmt::format("{} has no unit and is taken as {:.6g} m, {:.3g} times the radius; if another unit is meant, write "

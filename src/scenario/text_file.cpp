@@ -14,6 +14,9 @@
 #include <system_error>
 #include <utility>
 
+#include "scenario/document.hpp"
+#include "scenario/faults.hpp"
+
 namespace monograin {
 namespace {
 
@@ -130,6 +133,14 @@ void sync_to_disk(const fs::path& file) {
   const int error = errno;
   close(descriptor);
   if (!is_done) fail(file, error);
+}
+
+NamedText read_named_text(const fs::path& file, std::string_view expected, FileKind kind) {
+  // The parser refuses a text beyond the limit.
+  auto [text, problem] = read_text_file(file, k_largest_text, kind);
+  fs::path name = name_of_file(file, kind);
+  if (!problem.empty()) throw_fault({name.string()}, fmt::format("{}; expected {}", problem, expected));
+  return {.text = std::move(text), .file = std::move(name)};
 }
 
 }  // namespace monograin

@@ -26,6 +26,18 @@ enum class FileKind {
 [[nodiscard]] FileText read_text_file(const std::filesystem::path& file, std::size_t largest,
                                       FileKind kind = FileKind::regular);
 
+/// Text of a TOML file, and the file's name in messages. Names in the text are relative to the folder of that name.
+struct NamedText {
+  std::string text;
+  std::filesystem::path file;
+};
+
+/// Reads a TOML file that a user names.
+/// @param expected  what the file should be: "a sweep file"
+/// @throws ScenarioError if it cannot be read
+[[nodiscard]] NamedText read_named_text(const std::filesystem::path& file, std::string_view expected,
+                                        FileKind kind = FileKind::any);
+
 /// Name of a file in messages and in names derived from it: `stdin` for standard input.
 [[nodiscard]] std::filesystem::path name_of_file(const std::filesystem::path& file, FileKind kind = FileKind::any);
 

@@ -96,6 +96,60 @@ def test_a_calibration_finds_what_the_program_finds(run_program, tmp_path):
     assert "residual" in result.fit
 
 
+def _uniaxial_fit(data):
+    free = {
+        "material.youngs_modulus": {"from": "0.1 GPa", "to": "10 GPa"},
+        "material.yield_stress": {"from": "1 MPa", "to": "200 MPa"},
+    }
+    columns = {"x": "displacement[mm]", "y": "force[kN]", "weights": "absolute"}
+    return {"scenario": mg.scenario_folder() / "uniaxial.toml", "data": {"file": data, **columns}, "free": free}
+
+
+@pytest.mark.parametrize("kind", ["path", "table", "arrays", "pandas"])
+def test_a_calibration_takes_a_dict_and_data_in_memory(kind):
+    csv = mg.scenario_folder() / "calibrate" / "uniaxial.csv"
+    expected = mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml").values
+    displacement, force = np.loadtxt(csv, delimiter=",", skiprows=3, comments="#", unpack=True)
+    arrays = {"displacement[mm]": displacement, "force[kN]": force}
+    data = {"path": csv, "table": mg.Table.read_csv(csv), "arrays": arrays}
+    if kind == "pandas":
+        data["pandas"] = pytest.importorskip("pandas").DataFrame(arrays)
+    found = mg.calibrate(_uniaxial_fit(data[kind])).values
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+def test_rows_of_data_in_memory_that_are_nan_are_missing_cells():
+    csv = mg.scenario_folder() / "calibrate" / "uniaxial.csv"
+    displacement, force = np.loadtxt(csv, delimiter=",", skiprows=3, comments="#", unpack=True)
+    full = mg.calibrate(_uniaxial_fit({"displacement[mm]": displacement, "force[kN]": force}))
+    with_gap = force.copy()
+    with_gap[5] = np.nan
+    one_less = mg.calibrate(_uniaxial_fit({"displacement[mm]": displacement, "force[kN]": with_gap}))
+    assert len(one_less.fit) == len(full.fit) - 1
+
+
+def test_data_of_unequal_columns_and_faults_in_a_dict_are_refused():
+    with pytest.raises(ValueError, match="equal length"):
+        mg.calibrate(_uniaxial_fit({"displacement[mm]": [0.0, 1.0], "force[kN]": [0.0]}))
+    wrong = _uniaxial_fit({"displacement[mm]": [0.0, 1.0], "load[kN]": [0.0, 1.0]})
+    with pytest.raises(mg.ScenarioError, match="force"):
+        mg.calibrate(wrong)
+    with pytest.raises(mg.ScenarioError, match="calibration.toml.*fre"):
+        mg.calibrate({"scenario": "none.toml", "fre": {}})
+
+
+def test_a_sweep_and_a_design_take_dicts(tmp_path):
+    scenario = mg.scenario_folder() / "uniaxial.toml"
+    grid = {"scenario": scenario, "design": "grid", "vary": {"material.yield_stress": {"values": ["30 MPa", "40 MPa"]}}}
+    table = mg.sweep(grid, tmp_path / "grid")
+    assert table["material.yield_stress"].tolist() == [30e6, 40e6]
+    assert table.header["sweep"] == "sweep"
+    plan = tomllib.loads((mg.scenario_folder() / "design" / "uniaxial.toml").read_text())
+    of_file = mg.design(mg.scenario_folder() / "design" / "uniaxial.toml")
+    plan["scenario"] = scenario
+    assert str(mg.design(plan)).replace("design", "uniaxial") == str(of_file).replace("design", "uniaxial")
+
+
 def test_the_level_of_a_calibration_can_be_chosen():
     file = mg.scenario_folder() / "calibrate" / "uniaxial.toml"
     wide, narrow = (mg.calibrate(file, confidence=level).parameters for level in (0.99, 0.5))

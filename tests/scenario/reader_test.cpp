@@ -93,6 +93,9 @@ TEST(Scenario, QuestionsNumbersThatLackAUnit) {
       Lines{"displacement = 0.4 (line 12) has no unit and is taken as 0.4 m, 40 times the radius; if another unit "
             "is meant, write it: \"0.4 R0\""});
   EXPECT_EQ(good(with_line(12, "displacement = 0.05")).doubts, Lines()) << "five radii, across a gap";
+  EXPECT_EQ(
+      good(k_good_scenario, {"material.yield_stress=30"}).doubts,
+      Lines{"yield_stress = 30 has no unit and is taken as 30 Pa; if another unit is meant, write it: \"30 MPa\""});
   const std::string own_units =
       "model = \"mdr\"\n[particle]\nradius = 1\n[material]\nyoungs_modulus = 1\npoisson_ratio = 0.3\n"
       "yield_stress = 0.05\n[loading]\nconfiguration = \"simple\"\nsteps = [{ displacement = \"0.4 R0\", duration = "

@@ -17,6 +17,7 @@
 #include "scenario/numbers.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/table_layout.hpp"
+#include "scenario/text_file.hpp"
 #include "study/calibrate/machine.hpp"
 #include "study/calibrate/model_fit.hpp"
 #include "study/calibrate/prior.hpp"
@@ -101,6 +102,7 @@ struct Calibration {
 /// Reads and checks a calibration file, its scenario and its data.
 /// @throws ScenarioError with all faults of all three
 [[nodiscard]] Calibration read_calibration(const std::filesystem::path& file);
+[[nodiscard]] Calibration parse_calibration(NamedText source);
 
 /// The fitted scenario's response to one measured curve, with its confidence band.
 struct FittedCurve {

@@ -33,14 +33,13 @@ constexpr std::size_t k_most_zeros = 20;  // of weights, that are reported one b
 
 class CalibrationReader {
  public:
-  explicit CalibrationReader(const fs::path& file) : named_(file), file_(name_of_file(file)), reading_{faults_} {}
-
-  Calibration read() {
-    auto [text, problem] = read_text_file(named_, k_largest_text, FileKind::any);
-    if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a calibration file");
-    made_.text = std::move(text);
+  explicit CalibrationReader(NamedText source) : file_(std::move(source.file)), reading_{faults_} {
+    made_.text = std::move(source.text);
     made_.file = file_.string();
     made_.name = file_.stem().string();
+  }
+
+  Calibration read() {
     const toml::table tree = parse_document(made_.text, made_.file);
     const bool scenario_is_table = tree["scenario"].is_table();
     const Keys keys = root_keys(scenario_is_table, tree["data"].is_array());
@@ -485,7 +484,6 @@ class CalibrationReader {
                             made_.free.size(), points, points == 1 ? "" : "s"));
   }
 
-  fs::path named_;  ///< as on the command line
   fs::path file_;
   FaultList faults_;
   Reading reading_;
@@ -528,6 +526,10 @@ std::string data_names(const Calibration& calibration) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-Calibration read_calibration(const fs::path& file) { return CalibrationReader(file).read(); }
+Calibration read_calibration(const fs::path& file) {
+  return parse_calibration(read_named_text(file, "a calibration file"));
+}
+
+Calibration parse_calibration(NamedText source) { return CalibrationReader(std::move(source)).read(); }
 
 }  // namespace monograin

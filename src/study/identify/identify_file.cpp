@@ -92,11 +92,8 @@ std::string override_of_keys(const std::vector<std::string>& paths) {
 
 class PlanReader {
  public:
-  explicit PlanReader(const fs::path& file) : file_(name_of_file(file)), reading_{faults_} {
-    auto [text, problem] = read_text_file(file, k_largest_text, FileKind::any);
-    if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a plan of an experiment");
-    text_ = std::move(text);
-  }
+  explicit PlanReader(NamedText source)
+      : file_(std::move(source.file)), text_(std::move(source.text)), reading_{faults_} {}
 
   ExperimentPlan read() {
     made_.name = file_.stem().string();
@@ -256,6 +253,10 @@ class PlanReader {
 
 }  // namespace
 
-ExperimentPlan read_experiment_plan(const fs::path& file) { return PlanReader(file).read(); }
+ExperimentPlan read_experiment_plan(const fs::path& file) {
+  return parse_experiment_plan(read_named_text(file, "a plan of an experiment"));
+}
+
+ExperimentPlan parse_experiment_plan(NamedText source) { return PlanReader(std::move(source)).read(); }
 
 }  // namespace monograin

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenario/scenario.hpp"
+#include "scenario/text_file.hpp"
 #include "study/calibrate/calibration.hpp"
 
 namespace monograin {
@@ -36,5 +37,6 @@ struct ExperimentPlan {
 /// Reads and checks a plan and its scenario.
 /// @throws ScenarioError with all faults
 [[nodiscard]] ExperimentPlan read_experiment_plan(const std::filesystem::path& file);
+[[nodiscard]] ExperimentPlan parse_experiment_plan(NamedText source);
 
 }  // namespace monograin

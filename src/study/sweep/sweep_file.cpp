@@ -48,19 +48,18 @@ constexpr double k_most_maxpro_runs = 1e5;
 
 class SweepReader {
  public:
-  explicit SweepReader(const fs::path& file) : named_(file), file_(name_of_file(file)), reading_{faults_} {}
+  explicit SweepReader(NamedText source)
+      : text_(std::move(source.text)), file_(std::move(source.file)), reading_{faults_} {}
 
   [[nodiscard]] Sweep read() {
-    auto [text, problem] = read_text_file(named_, k_largest_text, FileKind::any);
-    if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected a sweep file");
-    const toml::table tree = parse_document(text, file_.string());
+    const toml::table tree = parse_document(text_, file_.string());
     digested_ = text_of_runs(tree);
     const std::vector<KeySpec> keys = sweep::root_keys(tree["scenario"].is_table());
     const SourceLocation top{file_.string()};
     const Section root(reading_, {&tree, top, "the sweep"}, keys);
     design_ = root.text("design");
     check_keys_of_design(root, keys);
-    read_scenario_of(root, tree, text);
+    read_scenario_of(root, tree);
     if (!scenario_) faults_.throw_if_any();  // without a scenario the keys are not known
     read_radius();
 
@@ -120,10 +119,10 @@ class SweepReader {
 
   // --- the scenario
 
-  void read_scenario_of(const Section& root, const toml::table& tree, const std::string& text) {
+  void read_scenario_of(const Section& root, const toml::table& tree) {
     if (const toml::table* table = tree["scenario"].as_table()) {
       scenario_tree_ = *table;
-      scenario_.emplace(ScenarioSource{.text = text, .origin = file_.string(), .table = "scenario"});
+      scenario_.emplace(ScenarioSource{.text = text_, .origin = file_.string(), .table = "scenario"});
       scenario_name_ = file_.stem().string();
       scenario_folder_ = file_.parent_path();
       return;
@@ -630,7 +629,7 @@ class SweepReader {
     SourceLocation where;
   };
 
-  fs::path named_;  ///< as on the command line
+  std::string text_;
   fs::path file_;
   FaultList faults_;
   Reading reading_;
@@ -657,7 +656,9 @@ class SweepReader {
 
 }  // namespace
 
-Sweep read_sweep(const fs::path& file) { return SweepReader(file).read(); }
+Sweep read_sweep(const fs::path& file) { return parse_sweep(read_named_text(file, "a sweep file")); }
+
+Sweep parse_sweep(NamedText source) { return SweepReader(std::move(source)).read(); }
 
 CheckedScenario scenario_of(const Sweep& sweep, std::size_t run) {
   return scenario_with(sweep.scenario, sweep.factors, sweep.runs[run]);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenario/scenario.hpp"
+#include "scenario/text_file.hpp"
 #include "study/sweep/design.hpp"
 #include "study/sweep/sweep_runs.hpp"
 
@@ -42,6 +43,7 @@ struct Sweep {
 /// A run that the language refuses, for example with a Poisson's ratio of 0.6, is no fault of the file.
 /// @throws ScenarioError with every fault found
 [[nodiscard]] Sweep read_sweep(const std::filesystem::path& file);
+[[nodiscard]] Sweep parse_sweep(NamedText source);
 
 /// Scenario of a run.
 /// @throws ScenarioError with every fault of the scenario with these values
