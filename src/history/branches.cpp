@@ -19,8 +19,10 @@ constexpr std::size_t k_least_short_runs = 3;  ///< number of such paths from wh
 constexpr double k_noise_factor = 6.0;         ///< least turn over the median noise; none of thousands exceeds it
 constexpr double k_turn_reach = 20.0;          ///< path beside a turn that shows where it is, over the median noise
 constexpr std::size_t k_least_line = 3;        ///< least number of rows beside a turn that show where it is
-constexpr std::size_t k_turn_rows = 10;        ///< by which the row of the turn may be off
-constexpr double k_least_turn = 2e-3;          ///< least turn over the range of x
+constexpr double k_equal_steps = 0.05;         ///< largest difference of equal steps of x, over the step
+constexpr double k_doubt_of_row = 4.0;   ///< error of the row where lines meet, over the difference of their steps
+constexpr std::size_t k_turn_rows = 10;  ///< by which the row of the turn may be off
+constexpr double k_least_turn = 2e-3;    ///< least turn over the range of x
 
 [[nodiscard]] XyCurve up_to(const XyCurve& loading, double x) {
   const auto end = std::ranges::upper_bound(loading.x, x);
@@ -174,6 +176,59 @@ namespace {
   return smoothed;
 }
 
+/// Largest difference of consecutive steps of x from row `first` to row `last`, over the largest step.
+[[nodiscard]] double unevenness(std::span<const double> x, std::size_t first, std::size_t last) {
+  double largest = 0.0;
+  double difference = 0.0;
+  for (std::size_t row = first + 1; row <= last; ++row) {
+    const double step = x[row] - x[row - 1];
+    largest = std::max(largest, std::abs(step));
+    if (row > first + 1) difference = std::max(difference, std::abs(step - (x[row - 1] - x[row - 2])));
+  }
+  return largest > 0.0 ? difference / largest : 0.0;
+}
+
+/// Where a curve without noise turns, in numbers of rows.
+struct PlaceOfTurn {
+  std::size_t last_row = 0;  ///< of the branch that ends there
+  double row = 0.0;
+};
+
+/// Place where lines through the rows of both sides meet: the extreme row, if they meet there as nearly as the steps of
+/// these rows are equal. None if the steps are not equal.
+/// @param begin, end  first row of the branch before the turn, last row of the branch after it
+[[nodiscard]] std::optional<PlaceOfTurn> place_between_rows(std::span<const double> x, std::size_t begin,
+                                                            std::size_t extreme, std::size_t end) {
+  std::optional<PlaceOfTurn> place;
+  double least = k_equal_steps;
+  for (const std::size_t before : {extreme, extreme - 1}) {
+    const std::size_t after = before + 1;
+    if (before < begin + k_least_line - 1 || after + k_least_line - 1 > end) continue;
+    const std::size_t first = before + 1 - k_least_line;
+    const std::size_t last = after + k_least_line - 1;
+    const double uneven = std::max(unevenness(x, first, before), unevenness(x, after, last));
+    if (!(uneven < least)) continue;
+    const Line rising = line_through(x, first, before);
+    const Line falling = line_through(x, after, last);
+    const double row = (falling.at(0.0) - rising.at(0.0)) / (rising.slope - falling.slope);
+    const double doubt = k_doubt_of_row * uneven + k_same_value * static_cast<double>(after);
+    if (row < static_cast<double>(before) - doubt || row > static_cast<double>(after) + doubt) continue;
+    least = uneven;
+    const bool is_extreme = std::abs(row - static_cast<double>(extreme)) <= doubt;
+    place = is_extreme ? PlaceOfTurn{extreme, static_cast<double>(extreme)} : PlaceOfTurn{before, row};
+  }
+  return place;
+}
+
+/// A turn of x without noise, in the extreme row or beside it.
+[[nodiscard]] Turn turn_beside(std::span<const double> x, std::size_t begin, std::size_t extreme, std::size_t end,
+                               std::span<const double> measured) {
+  const auto place = place_between_rows(measured, begin, extreme, end);
+  if (!place || place->row == static_cast<double>(extreme)) return {extreme, x[extreme], place.has_value()};
+  const double there = line_through(x, place->last_row + 1 - k_least_line, place->last_row).at(place->row);
+  return {place->last_row, x[extreme] > x[begin] ? std::max(there, x[extreme]) : std::min(there, x[extreme])};
+}
+
 }  // namespace
 
 std::vector<std::size_t> turning_points(std::span<const double> x) {
@@ -197,15 +252,20 @@ std::vector<std::size_t> turning_points(std::span<const double> x) {
   return turns;
 }
 
-std::vector<double> turning_values(std::span<const double> x, std::span<const std::size_t> turns) {
+std::vector<Turn> turns_of(std::span<const double> x, std::span<const std::size_t> points,
+                           std::span<const double> measured) {
   const double noise = noise_in(x);
-  std::vector<double> values;
-  for (std::size_t k = 0; k < turns.size(); ++k) {
-    const bool is_end = k == 0 || k + 1 == turns.size();
-    values.push_back(is_end || noise == 0.0 ? x[turns[k]]
-                                            : smoothed_at(x, turns[k - 1], turns[k], turns[k + 1], noise));
+  std::vector<Turn> turns;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::size_t row = points[k];
+    const bool is_end = k == 0 || k + 1 == points.size();
+    if (!is_end && noise > 0.0) {
+      turns.push_back({row, smoothed_at(x, points[k - 1], row, points[k + 1], noise)});
+    } else {
+      turns.push_back(is_end ? Turn{row, x[row]} : turn_beside(x, points[k - 1], row, points[k + 1], measured));
+    }
   }
-  return values;
+  return turns;
 }
 
 XyCurve first_loading(const XyCurve& curve) {

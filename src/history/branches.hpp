@@ -41,10 +41,21 @@ struct Excursion {
 /// Noise of x: the median length of paths of at most two rows between turns; 0 if there are less than three of them.
 [[nodiscard]] double noise_in(std::span<const double> x);
 
-/// x at turning points. The extreme row of a turn has the largest noise of its neighbours: without it, x turns where
-/// straight lines through the rows of both sides meet. The first and the last row have their own x.
-/// @param turns  turning_points() of x
-[[nodiscard]] std::vector<double> turning_values(std::span<const double> x, std::span<const std::size_t> turns);
+/// Where x turns, or begins or ends.
+struct Turn {
+  std::size_t last_row = 0;  ///< of the branch that ends there
+  double x = 0.0;
+  bool is_known = true;  ///< false: x may turn farther on, between the extreme row and the one beside it
+};
+
+/// The turns of a curve whose rows are few, or have noise. x turns where straight lines through the rows of both sides
+/// meet, because the extreme row has the largest noise, and because x of rows at equal times is farthest between two of
+/// them. Without noise the lines need at least three rows in equal steps on each side; otherwise x turns in the extreme
+/// row. The first and the last row have their own x.
+/// @param points    turning_points() of x
+/// @param measured  x before corrections, whose steps show in which rows a curve without noise turns
+[[nodiscard]] std::vector<Turn> turns_of(std::span<const double> x, std::span<const std::size_t> points,
+                                         std::span<const double> measured);
 
 /// Mean slope dy/dx of the first part of an unloading, over which y falls by 5 %; of the whole unloading if y falls by
 /// less.

@@ -4,6 +4,7 @@
 #include <array>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -64,7 +65,7 @@ class Profile {
 
   /// Parameters where the k-th is moved by a distance, and the cost is least as far as its shape says.
   [[nodiscard]] std::vector<double> predicted(std::size_t k, double distance) const {
-    std::vector<double> parameters = solution_.parameters;
+    std::vector<double> parameters = from_->parameters;
     const auto column = static_cast<Eigen::Index>(k);
     const double variance = uncertainty_.cost_covariance(column, column);
     for (std::size_t j = 0; j < parameters.size(); ++j) {
@@ -82,10 +83,18 @@ class Profile {
     return true;
   }
 
+  /// Lets the profile begin at another minimum.
+  void begin_at(const LocalMinimum& minimum) { from_ = &minimum; }
+
+  /// True if a minimum is so low that it belongs to the interval.
+  [[nodiscard]] bool is_low(const LocalMinimum& minimum) const {
+    return rise_of(minimum.cost) < uncertainty_.t_quantile * uncertainty_.t_quantile;
+  }
+
   /// End of the k-th interval on one side: value at which the profile has risen by that of t standard errors.
   /// @param is_cut  receives whether the search ended at the bound, or gave up, before that rise
   [[nodiscard]] double end(std::size_t k, bool is_above, bool& is_cut) {
-    const double best = solution_.parameters[k];
+    const double best = from_->parameters[k];
     const double bound = is_above ? problem_.parameters[k].upper : problem_.parameters[k].lower;
     is_cut = true;
     if (best == bound) return bound;
@@ -94,7 +103,7 @@ class Profile {
     double step =
         std::isfinite(error) && error > 0.0 ? std::min(uncertainty_.t_quantile * error, range) : k_first_step * range;
     const double t = uncertainty_.t_quantile * uncertainty_.excess_over_cost(k);
-    Point inner{best, 0.0, solution_.parameters};
+    Point inner{best, rise_of(from_->cost), from_->parameters};
     Point outer;
     for (int count = 0;; ++count) {  // outwards
       const double value = step >= range ? bound : best + (is_above ? step : -step);
@@ -149,14 +158,13 @@ class Profile {
   /// Start of the fit for another value of the k-th parameter: the others are extrapolated in proportion.
   [[nodiscard]] std::vector<double> moved(const Point& from, std::size_t k, double value) const {
     std::vector<double> start = from.parameters;
-    const double done = from.value - solution_.parameters[k];
+    const std::vector<double>& first = from_->parameters;
+    const double done = from.value - first[k];
     if (done != 0.0) {
-      const double factor = (value - solution_.parameters[k]) / done;
-      for (std::size_t j = 0; j < start.size(); ++j) {
-        start[j] = solution_.parameters[j] + factor * (from.parameters[j] - solution_.parameters[j]);
-      }
+      const double factor = (value - first[k]) / done;
+      for (std::size_t j = 0; j < start.size(); ++j) start[j] = first[j] + factor * (from.parameters[j] - first[j]);
     } else if (std::isfinite(uncertainty_.standard_error(k)) && uncertainty_.standard_error(k) > 0.0) {
-      start = predicted(k, value - solution_.parameters[k]);
+      start = predicted(k, value - first[k]);
     }
     start[k] = value;
     return start;
@@ -165,12 +173,51 @@ class Profile {
   const LeastSquaresProblem& problem_;
   const LeastSquaresSolution& solution_;
   const Uncertainty& uncertainty_;
+  const LocalMinimum* from_ = &solution_;  ///< where the profile begins
   std::vector<double> residuals_;
   std::optional<LocalMinimum> better_;
   long evaluations_ = 0;
 };
 
+/// Extends intervals to those around another minimum, if that lies outside.
+void extend(Profile& profile, const LocalMinimum& minimum, const Uncertainty& uncertainty,
+            std::vector<Interval>& intervals) {
+  bool is_outside = false;
+  for (std::size_t k = 0; k < intervals.size(); ++k) {
+    const double value = minimum.parameters[k];
+    is_outside = is_outside || value < intervals[k].lower || value > intervals[k].upper;
+  }
+  if (!is_outside) return;
+  profile.begin_at(minimum);
+  for (std::size_t k = 0; k < intervals.size() && !profile.better(); ++k) {
+    if (!uncertainty.is_determined[k]) continue;
+    Interval other;
+    other.lower = profile.end(k, false, other.is_cut_below);
+    if (!profile.better()) other.upper = profile.end(k, true, other.is_cut_above);
+    Interval& interval = intervals[k];
+    if (other.lower < interval.lower) {
+      interval.lower = other.lower;
+      interval.is_cut_below = other.is_cut_below;
+    }
+    if (other.upper > interval.upper) {
+      interval.upper = other.upper;
+      interval.is_cut_above = other.is_cut_above;
+    }
+  }
+}
+
 }  // namespace
+
+std::optional<LocalMinimum> minimum_beside(const LeastSquaresSolution& solution, const Uncertainty& uncertainty) {
+  for (const LocalMinimum& other : solution.minima) {
+    const double rise = (other.cost - solution.cost) / uncertainty.rise;
+    if (!(rise < uncertainty.t_quantile * uncertainty.t_quantile)) continue;
+    for (std::size_t k = 0; k < other.parameters.size(); ++k) {
+      if (std::abs(other.parameters[k] - solution.parameters[k]) > uncertainty.half_width(k)) return other;
+    }
+  }
+  return std::nullopt;
+}
 
 CostCheck check_cost(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                      const Uncertainty& uncertainty) {
@@ -221,6 +268,10 @@ ProfileIntervals profile_intervals(const LeastSquaresProblem& problem, const Lea
     }
     result.intervals.push_back(interval);
   }
+  for (const LocalMinimum& other : solution.minima) {
+    if (profile.better()) break;
+    if (has_size && profile.is_low(other)) extend(profile, other, uncertainty, result.intervals);
+  }
   result.better = profile.better();
   result.evaluations = profile.evaluations();
   return result;
@@ -266,7 +317,10 @@ Bootstrap bootstrap(const LeastSquaresProblem& problem, const LeastSquaresSoluti
   Bootstrap result;
   const double done_by_sample = 1.0 / static_cast<double>(count);
   for (std::size_t sample = 0; sample < count; ++sample) {
-    for (std::size_t i = 0; i < n;) {
+    for (std::size_t i = 0; block == 0 && i < n; ++i) {
+      change[i] = deviation(i) * uncertainty.standard_deviation * normal(generator) - solution.residuals[i];
+    }
+    for (std::size_t i = 0; block > 0 && i < n;) {
       std::size_t from = std::uniform_int_distribution<std::size_t>(0, n - 1)(generator);
       for (std::size_t k = 0; k < block && i < n; ++k, ++i, ++from) {
         change[i] = deviation(i) * inflation * (alike[from % n] - mean) - solution.residuals[i];
@@ -283,7 +337,9 @@ Bootstrap bootstrap(const LeastSquaresProblem& problem, const LeastSquaresSoluti
   return result;
 }
 
-std::optional<ResidualTests> test_residuals(std::span<const double> residuals) {
+std::optional<ResidualTests> test_residuals(std::span<const double> all) {
+  std::vector<double> residuals;
+  std::ranges::remove_copy(all, std::back_inserter(residuals), 0.0);
   if (residuals.size() < k_least_rows) return std::nullopt;
   const auto n = static_cast<double>(residuals.size());
   ResidualTests tests;

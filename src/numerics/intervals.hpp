@@ -34,6 +34,11 @@ struct CostCheck {
 [[nodiscard]] CostCheck check_cost(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                                    const Uncertainty& uncertainty);
 
+/// A minimum outside of the intervals of the covariance, whose cost is so low that it belongs to them; none if there is
+/// none.
+[[nodiscard]] std::optional<LocalMinimum> minimum_beside(const LeastSquaresSolution& solution,
+                                                         const Uncertainty& uncertainty);
+
 struct Interval {
   double lower = 0.0;
   double upper = 0.0;
@@ -49,7 +54,8 @@ struct ProfileIntervals {
 
 /// Profile-likelihood intervals (Venzon and Moolgavkar (1988)). At their ends the cost, minimised over the other
 /// parameters, has risen by t^2 times the rise that the covariance predicts for one standard error. Accurate to 0.3 %
-/// of the half-width.
+/// of the half-width. An interval contains those around other minima of the solution that have not risen as far, and
+/// what lies between.
 [[nodiscard]] ProfileIntervals profile_intervals(const LeastSquaresProblem& problem,
                                                  const LeastSquaresSolution& solution, const Uncertainty& uncertainty);
 
@@ -63,10 +69,10 @@ struct Bootstrap {
 };
 
 /// Repeats a fit with resampled data: residuals, made alike by their deviations, are drawn with replacement in blocks
-/// of consecutive ones (Kuensch (1989)), enlarged by sqrt(n/(n - p)). Residuals of priors are drawn from their
-/// distribution.
+/// of consecutive ones (Kuensch (1989)), enlarged by sqrt(n/(n - p)). If the noise is known, normal residuals of its
+/// size are drawn instead. Residuals of priors are drawn from their distribution.
 /// @param n      number of residuals of data, which come first; larger than the number of parameters
-/// @param block  length of the blocks; 1 if residuals are independent
+/// @param block  length of the blocks; 1 if residuals are independent; 0 if the noise is known
 /// @param count  number of samples
 [[nodiscard]] Bootstrap bootstrap(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                                   const Uncertainty& uncertainty, std::size_t n, std::size_t block, std::size_t count,
@@ -83,8 +89,8 @@ struct ResidualTests {
   [[nodiscard]] bool are_independent() const noexcept { return runs_p >= 0.01 && correlation_p >= 0.01; }
 };
 
-/// Tests residuals for independence.
+/// Tests residuals for independence. Those that are zero, as before first touch, are no noise and do not count.
 /// @return nothing for fewer than 20 residuals, or if all have one sign
-[[nodiscard]] std::optional<ResidualTests> test_residuals(std::span<const double> residuals);
+[[nodiscard]] std::optional<ResidualTests> test_residuals(std::span<const double> all);
 
 }  // namespace monograin

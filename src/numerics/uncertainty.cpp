@@ -69,6 +69,16 @@ Eigen::MatrixXd noise_of_normal(const Eigen::MatrixXd& jacobian, std::span<const
   return jacobian.transpose() * squares.asDiagonal() * jacobian;
 }
 
+/// Number of the first n residuals that are zero and depend on no parameter, as those before first touch: they tell
+/// nothing of the noise.
+std::size_t silent_rows(std::span<const double> residuals, const Eigen::MatrixXd& jacobian, std::size_t n) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (residuals[i] == 0.0 && jacobian.row(static_cast<Eigen::Index>(i)).isZero(0.0)) ++count;
+  }
+  return count;
+}
+
 /// True if residuals depend on a parameter by more than the error of their differences.
 bool has_influence(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                    const Eigen::MatrixXd& jacobian, std::size_t parameter) {
@@ -126,6 +136,7 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
   result.level = level;
   result.t_quantile = result.standard_deviation = result.rise = std::numeric_limits<double>::quiet_NaN();
   result.is_determined.assign(p, true);
+  result.silent_rows = silent_rows(solution.residuals, jacobian, n);
   result.covariance.setConstant(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(p),
                                 std::numeric_limits<double>::quiet_NaN());
   result.cost_covariance = result.covariance;

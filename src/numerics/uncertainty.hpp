@@ -25,6 +25,7 @@ namespace monograin {
 /// (Huber (1981), section 7.6). Residuals of priors are rows of J with d = 1, but do not contribute to s.
 struct Uncertainty {
   std::size_t degrees_of_freedom = 0;  ///< n - p; if 0 and s is unknown, there are no errors and no intervals
+  std::size_t silent_rows = 0;         ///< residuals of data that are zero and depend on no parameter
   double level = 0.95;                 ///< probability of the two-sided intervals
   double t_quantile = 0.0;             ///< quantile of Student's t; normal if s is known; nan if there are no errors
   double standard_deviation = 0.0;     ///< s, in units of the residuals; nan if there are no errors

@@ -187,17 +187,50 @@ TEST(TurningPoints, AreNotThoseOfNoise) {
     const Values found{x[turns[1]], x[turns[2]], x[turns[3]]};
     const Values expected{1, 0.8, 0.9};
     for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(found[k], expected[k], 5 * noise) << noise;
-    const Values smoothed = turning_values(x, turns);
-    EXPECT_NEAR(smoothed[1], 1.0, 4 * noise) << noise << ": a hold";
-    for (const std::size_t k : {1U, 2U}) EXPECT_NEAR(smoothed[k + 1], expected[k], noise) << noise;
+    const std::vector<Turn> smoothed = turns_of(x, turns, x);
+    EXPECT_NEAR(smoothed[1].x, 1.0, 4 * noise) << noise << ": a hold";
+    for (const std::size_t k : {1U, 2U}) EXPECT_NEAR(smoothed[k + 1].x, expected[k], noise) << noise;
   }
 }
 
 TEST(TurningPoints, OfExactDataAreWhereTheirRowsAre) {
   const Values x = through({0, 2, 1.9, 2.5, 2.4}, 10, 0.0);
-  const Values values = turning_values(x, turning_points(x));
-  EXPECT_EQ(values, (Values{0, 2, 1.9, 2.5, 2.4}));
+  const std::vector<Turn> turns = turns_of(x, turning_points(x), x);
+  const Values expected{0, 2, 1.9, 2.5, 2.4};
+  ASSERT_EQ(turns.size(), expected.size());
+  for (std::size_t k = 0; k < turns.size(); ++k) EXPECT_NEAR(turns[k].x, expected[k], 1e-14);
   EXPECT_EQ(noise_in(x), 0.0);
+}
+
+TEST(TurningPoints, OfRowsAtEqualTimesLieBetweenTheRows) {
+  // Up to 1 at one speed and back at half of it; rows every 0.037 s miss the turn by any part of a step.
+  for (const double delay : {0.0, 0.001, 0.009, 0.018, 0.024, 0.036}) {
+    Values x;
+    std::size_t rows_before = 0;
+    for (double time = delay; time < 1.6; time += 0.037) {
+      x.push_back(time < 1.0 ? time : 1.0 - 0.5 * (time - 1.0));
+      if (time < 1.0 + 1e-12) ++rows_before;
+    }
+    const std::vector<Turn> turns = turns_of(x, turning_points(x), x);
+    ASSERT_EQ(turns.size(), 3U) << delay;
+    EXPECT_NEAR(turns[1].x, 1.0, 1e-12) << delay;
+    EXPECT_EQ(turns[1].last_row + 1, rows_before) << delay;
+  }
+}
+
+TEST(TurningPoints, OfUnevenRowsLieInTheExtremeRow) {
+  const Values x{0, 0.2, 0.5, 0.6, 0.95, 1.0, 0.97, 0.8, 0.75};
+  const std::vector<Turn> turns = turns_of(x, turning_points(x), x);
+  ASSERT_EQ(turns.size(), 3U);
+  EXPECT_EQ(turns[1].x, 1.0);
+  EXPECT_EQ(turns[1].last_row, 5U);
+}
+
+TEST(TurningPoints, OfAHoldBetweenRowsLieOnTheHold) {
+  const Values x{0.0, 0.3, 0.6, 0.9, 1.0, 1.0, 1.0, 1.0, 0.7, 0.4, 0.1};
+  const std::vector<Turn> turns = turns_of(x, turning_points(x), x);
+  ASSERT_EQ(turns.size(), 3U);
+  EXPECT_NEAR(turns[1].x, 1.0, 1e-14);
 }
 
 TEST(TurningPoints, LieWhereTheRowsBesideThemLeadNotAtTheLargestNoise) {
@@ -208,7 +241,7 @@ TEST(TurningPoints, LieWhereTheRowsBesideThemLeadNotAtTheLargestNoise) {
     const Values x = through({0, 1, 0.9}, 600, 1e-3, seed);
     const auto turns = turning_points(x);
     ASSERT_EQ(turns.size(), 3U) << seed;
-    sum_smoothed += turning_values(x, turns)[1] - 1.0;
+    sum_smoothed += turns_of(x, turns, x)[1].x - 1.0;
     sum_of_rows += x[turns[1]] - 1.0;
   }
   EXPECT_NEAR(sum_smoothed / k_samples, 0.0, 2e-4) << "a fifth of the noise";

@@ -131,6 +131,61 @@ TEST(Intervals, OfABootstrapOfALinearProblemAreThoseOfTheCovariance) {
   }
 }
 
+TEST(Intervals, OfABootstrapAreThoseOfTheNoiseThatIsKnown) {
+  const auto problem = problem_of(k_line);
+  const auto solution = minimise(problem);
+  ASSERT_TRUE(solution);
+  // Four times the noise of the data.
+  const Uncertainty uncertainty =
+      uncertainty_of(problem, *solution, residual_jacobian(problem, solution->parameters), k_rows, 0.95, 0.4);
+  const Bootstrap drawn = bootstrap(problem, *solution, uncertainty, k_rows, 0, 1000, 3);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(drawn.standard_error(k) / uncertainty.standard_error(k), 1.0, 0.1);
+  }
+}
+
+TEST(Intervals, OfAProfileHoldEveryMinimumThatIsLowEnough) {
+  // Residuals fall apart into noise of one and a function of the parameter with the minima -1 and 1.
+  for (const double tilt : {0.5, 3.0}) {
+    LeastSquaresProblem problem;
+    problem.parameters = {{-3.0, 3.0, false, {}}};
+    problem.residual_count = k_rows;
+    problem.residuals = [tilt](std::span<const double> p, std::span<double> residuals) {
+      for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] = i % 2 == 0 ? 1.0 : -1.0;
+      residuals[0] = 20.0 * (p[0] * p[0] - 1.0);
+      residuals[1] = tilt * (p[0] - 1.0);
+      return true;
+    };
+    const auto [solution, uncertainty] = fitted(problem);
+    ASSERT_NEAR(solution.parameters[0], 1.0, 1e-6);
+    const auto other = minimum_beside(solution, uncertainty);
+    const ProfileIntervals found = profile_intervals(problem, solution, uncertainty);
+    // At -1 the sum of squares has risen by 4 tilt^2: 1 and 36 times that at one standard error.
+    EXPECT_EQ(other.has_value(), tilt == 0.5);
+    EXPECT_EQ(found.intervals[0].lower < -0.99, tilt == 0.5) << found.intervals[0].lower;
+    EXPECT_NEAR(found.intervals[0].upper, 1.0, 0.1);
+    EXPECT_FALSE(found.better);
+  }
+}
+
+TEST(Intervals, CountRowsThatAreZeroBeforeFirstTouch) {
+  const auto touching = problem_of(k_line);
+  LeastSquaresProblem problem = touching;
+  problem.residual_count = 2 * k_rows;
+  problem.residuals = [&touching](std::span<const double> p, std::span<double> residuals) {
+    std::ranges::fill(residuals.first(k_rows), 0.0);
+    return touching.residuals(p, residuals.subspan(k_rows));
+  };
+  const auto [solution, uncertainty] = fitted(touching);
+  const auto with_zeros = minimise(problem);
+  ASSERT_TRUE(with_zeros);
+  const Uncertainty found =
+      uncertainty_of(problem, *with_zeros, residual_jacobian(problem, with_zeros->parameters), 2 * k_rows, 0.95);
+  EXPECT_EQ(found.silent_rows, k_rows);
+  EXPECT_EQ(uncertainty.silent_rows, 0U);
+  EXPECT_EQ(test_residuals(with_zeros->residuals)->runs, test_residuals(solution.residuals)->runs);
+}
+
 /// The line's problem with every tenth residual counted five times; the noise of the data stays the same.
 struct WeightedLine {
   LeastSquaresProblem problem;

@@ -118,13 +118,13 @@ bool is_constant(const Calibration& calibration) {
   return highest - lowest <= k_same_number * std::max(std::abs(lowest), std::abs(highest));
 }
 
-double explained_share(const Calibration& calibration, double cost) {
+double explained_share(const Calibration& calibration, std::span<const double> weights, double cost) {
   if (is_constant(calibration)) return k_nan;
   const std::vector<std::size_t> rows = rows_that_count(calibration);
   const auto cost_of = [&](double constant) {
     double sum = 0.0;
     for (const std::size_t row : rows) {
-      sum += calibration.loss.rho(calibration.weights[row] * (calibration.y.values[row] - constant));
+      sum += calibration.loss.rho(weights[row] * (calibration.y.values[row] - constant));
     }
     return sum;
   };
@@ -158,6 +158,8 @@ std::string likely_cause(const Calibration& calibration, const FitTrial& fit) {
 std::vector<std::string> warnings_of(const Calibration& calibration, const CalibrationResult& result,
                                      const FitTrial& fit) {
   if (result.uncertainty.degrees_of_freedom == 0 || result.explained >= k_least_explained) return {};
+  // A robust loss hardly tells the constant from a fit where its scale is as small as the noise.
+  if (calibration.loss.kind != Loss::linear && result.r_squared >= k_least_explained) return {};
   if (is_constant(calibration)) {
     return {"y is the same in every row: the data say nothing of the parameters; expected the column that changes"};
   }

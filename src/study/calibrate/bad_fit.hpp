@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@ namespace monograin {
 [[nodiscard]] bool is_constant(const Calibration& calibration);
 
 /// 1 - cost / (cost of the constant that fits best, with the same weights and loss); nan where y is constant.
-/// @param cost  sum of rho of the weighted residuals
-[[nodiscard]] double explained_share(const Calibration& calibration, double cost);
+/// @param weights  of all rows
+/// @param cost     sum of rho of the weighted residuals
+[[nodiscard]] double explained_share(const Calibration& calibration, std::span<const double> weights, double cost);
 
 /// How much a fit explains, and with which parameters.
 struct TrialFit {

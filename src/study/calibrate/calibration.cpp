@@ -22,6 +22,8 @@ namespace {
 constexpr std::size_t k_curve_points = 400;  // points of a fitted curve, about, if the data have fewer
 constexpr int k_most_rounds = 50;            // repetitions of fit and estimate of its noise
 constexpr int k_most_better = 3;             // better fits that the search for intervals may find
+constexpr double k_least_size = 0.1;         // of the fit that noise is in proportion to, over the datum
+constexpr double k_same_weight = 1e-6;       // relative change of weights that counts as none
 constexpr double k_margin_of_round_off = 1e3;
 constexpr double k_bad_condition = 1e3;  // a correlation of 1 - 2e-6
 constexpr std::size_t k_bootstrap_samples = 400;
@@ -58,6 +60,7 @@ class Fit {
       : calibration_(calibration),
         procedures_(model_fits(calibration)),
         response_(calibration.x.values.size()),
+        weights_(calibration.weights),
         prior_weight_(prior_weight) {
     for (const MeasuredCurve& curve : calibration.curves) {
       responses_.emplace_back(calibration, curve, x_of(calibration, curve), y_of(calibration, curve));
@@ -79,7 +82,7 @@ class Fit {
       if (failing(parameters) < responses_.size()) return false;
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         const std::size_t row = rows_[i];
-        residuals[i] = calibration_.weights[row] * (calibration_.y.values[row] - response_[row]);
+        residuals[i] = weights_[row] * (calibration_.y.values[row] - response_[row]);
       }
       for (std::size_t j = 0; j < priors_.size(); ++j) {
         const std::size_t k = priors_[j];
@@ -92,8 +95,10 @@ class Fit {
   Fit& operator=(const Fit&) = delete;
 
   /// The best fit; none if no parameters that were tried have a response. If the noise is not known, the priors are
-  /// weighted by the noise that the data's residuals show.
+  /// weighted by the noise that the data's residuals show. If the noise is in proportion to y, it follows from the fit:
+  /// a datum that noise makes small would otherwise weigh more.
   [[nodiscard]] std::optional<LeastSquaresSolution> search() {
+    if (has_noise_of_fit()) return search_with_noise_of_fit();
     if (priors_.empty() || calibration_.knows_noise()) return search_once();
     prior_weight_ = 0.0;
     auto solution = search_once();
@@ -109,6 +114,44 @@ class Fit {
       if (std::abs(prior_weight_ - before) <= k_same_number * prior_weight_) break;
     }
     return solution;
+  }
+
+  [[nodiscard]] bool has_noise_of_fit() const {
+    return std::ranges::any_of(calibration_.curves,
+                               [](const MeasuredCurve& curve) { return curve.noise.relative > 0.0; });
+  }
+
+  [[nodiscard]] std::optional<LeastSquaresSolution> search_with_noise_of_fit() {
+    auto solution = search_once();
+    for (int round = 0; solution && round < k_most_rounds; ++round) {
+      if (failing(solution->parameters) < responses_.size()) break;
+      if (!weigh_by_response()) break;
+      const LocalMinimum& start = *solution;
+      auto next = minimise_near(problem_, {&start, 1});
+      if (!next) break;
+      next->evaluations += solution->evaluations;
+      next->failures += solution->failures;
+      next->minima = std::move(solution->minima);
+      solution = std::move(next);
+    }
+    return solution;
+  }
+
+  /// Sets the weights of rows with noise in proportion to y by the last response. A fit that is far below the datum,
+  /// as before first touch, does not make its noise small.
+  /// @return true if they have changed
+  bool weigh_by_response() {
+    bool has_changed = false;
+    for (const MeasuredCurve& curve : calibration_.curves) {
+      if (!(curve.noise.relative > 0.0)) continue;
+      for (std::size_t row = curve.begin; row < curve.end; ++row) {
+        const double size = std::max(std::abs(response_[row]), k_least_size * std::abs(calibration_.y.values[row]));
+        const double weight = 1.0 / std::hypot(curve.noise.absolute, curve.noise.relative * size);
+        has_changed = has_changed || std::abs(weight - weights_[row]) > k_same_weight * weight;
+        weights_[row] = weight;
+      }
+    }
+    return has_changed;
   }
 
   /// One search with fixed weights. For many rows, the search begins with a fit to thinned data.
@@ -130,7 +173,7 @@ class Fit {
   TrialFit explain() {
     const auto solution = search();
     if (!solution) return {k_nan, {}};
-    return {explained_share(calibration_, cost_of_data(*solution)), solution->parameters};
+    return {explained_share(calibration_, weights_, cost_of_data(*solution)), solution->parameters};
   }
 
   /// Response of the best fit in every row; none if there is no fit.
@@ -227,9 +270,9 @@ class Fit {
     std::vector<double> result;
     if (calibration_.weighting != "area") return result;
     double squares = 0.0;
-    for (const std::size_t row : rows_) squares += std::pow(calibration_.weights[row], 2);
+    for (const std::size_t row : rows_) squares += std::pow(weights_[row], 2);
     const double root_mean_square = std::sqrt(squares / static_cast<double>(rows_.size()));
-    for (const std::size_t row : rows_) result.push_back(calibration_.weights[row] / root_mean_square);
+    for (const std::size_t row : rows_) result.push_back(weights_[row] / root_mean_square);
     return result;
   }
 
@@ -256,7 +299,7 @@ class Fit {
   [[nodiscard]] bool is_exact(const CalibrationResult& result) const {
     double squares = 0.0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      squares += std::pow(calibration_.weights[rows_[i]] * calibration_.y.values[rows_[i]], 2);
+      squares += std::pow(weights_[rows_[i]] * calibration_.y.values[rows_[i]], 2);
     }
     const double share = k_margin_of_round_off * problem_.noise;
     return cost_of_data(result.solution) <= share * share * squares;
@@ -281,6 +324,13 @@ class Fit {
                          result.uncertainty.condition));
       return std::nullopt;
     }
+    if (const auto other = minimum_beside(solution, result.uncertainty)) {
+      const std::size_t k = farthest_parameter(*other, result);
+      reason(IntervalMethod::profile,
+             fmt::format("another fit is nearly as good, with '{}' = {:.4g} {}", calibration_.free[k].key.path,
+                         other->parameters[k] / calibration_.free[k].unit_factor, calibration_.free[k].unit));
+      return std::nullopt;
+    }
     CostCheck check = check_cost(problem_, solution, result.uncertainty);
     result.solution.evaluations += check.evaluations;
     if (check.shape == CostShape::quadratic) {
@@ -295,6 +345,19 @@ class Fit {
                     std::abs(check.at) == 1.0 ? "" : "s", calibration_.free[check.parameter].key.path, check.ratio));
     is_kinked_ = check.shape == CostShape::kinked;
     return check.better;
+  }
+
+  /// The parameter in which a minimum differs most from the solution, in standard errors.
+  [[nodiscard]] static std::size_t farthest_parameter(const LocalMinimum& other, const CalibrationResult& result) {
+    std::size_t farthest = 0;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < other.parameters.size(); ++k) {
+      const double distance = std::abs(other.parameters[k] - result.solution.parameters[k]);
+      if (!(distance / result.uncertainty.standard_error(k) > largest)) continue;
+      largest = distance / result.uncertainty.standard_error(k);
+      farthest = k;
+    }
+    return farthest;
   }
 
   static void covariance_intervals(CalibrationResult& result) {
@@ -331,13 +394,15 @@ class Fit {
     if (result.uncertainty.degrees_of_freedom == 0) return;
     const auto tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
     const bool is_independent = !tests || tests->are_independent();
-    const auto block =
+    auto block =
         is_independent ? std::size_t{1} : static_cast<std::size_t>(std::cbrt(static_cast<double>(rows_.size())) + 0.5);
+    if (calibration_.knows_noise()) block = 0;
     const Bootstrap drawn =
         bootstrap(problem_, result.solution, result.uncertainty, rows_.size(), block, k_bootstrap_samples, k_seed);
     result.solution.evaluations += drawn.evaluations;
-    result.method_reason = fmt::format("asked for: {} samples of the residuals{}", drawn.samples.size(),
-                                       block > 1 ? fmt::format(" in blocks of {}", block) : "");
+    result.method_reason =
+        fmt::format("asked for: {} samples of the {}{}", drawn.samples.size(), block > 0 ? "residuals" : "noise",
+                    block > 1 ? fmt::format(" in blocks of {}", block) : "");
     if (drawn.samples.size() < k_bootstrap_samples / 2) return;
     for (std::size_t k = 0; k < result.intervals.size(); ++k) {
       if (!result.uncertainty.is_determined[k]) continue;
@@ -376,7 +441,7 @@ class Fit {
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       jacobian.row(static_cast<Eigen::Index>(i)) =
-          -calibration_.weights[rows_[i]] * gradients.row(static_cast<Eigen::Index>(rows_[i]));
+          -weights_[rows_[i]] * gradients.row(static_cast<Eigen::Index>(rows_[i]));
     }
     return jacobian;
   }
@@ -384,6 +449,7 @@ class Fit {
   void fit_at_data(CalibrationResult& result, const Eigen::MatrixXd& gradients) {
     static_cast<void>(failing(result.solution.parameters));
     result.fit = {calibration_.x.values, response_, bands(result, gradients)};
+    result.weights = weights_;
     if (!calibration_.has_machine()) return;
     for (const Response& response : responses_) {
       result.particle.insert(result.particle.end(), response.particle().begin(), response.particle().end());
@@ -441,7 +507,7 @@ class Fit {
     }
     result.rms = std::sqrt(about_fit / static_cast<double>(rows_.size()));
     result.r_squared = is_constant(calibration_) ? k_nan : 1.0 - about_fit / about_mean;
-    result.explained = explained_share(calibration_, cost_of_data(result.solution));
+    result.explained = explained_share(calibration_, weights_, cost_of_data(result.solution));
     if (!is_exact(result)) {
       result.residual_tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
     }
@@ -451,6 +517,7 @@ class Fit {
   ModelFits procedures_;
   std::vector<Response> responses_;  ///< one for each curve
   std::vector<double> response_;     ///< in every row of the last run
+  std::vector<double> weights_;      ///< of every row
   std::vector<std::size_t> rows_;    ///< rows that count
   std::vector<std::size_t> priors_;  ///< indices of the parameters whose priors are residuals
   bool is_kinked_ = false;           ///< the sum of squares has a kink near its minimum

@@ -42,6 +42,12 @@ struct MeasuredQuantity {
   std::vector<double> values;
 };
 
+/// The two parts of a standard deviation of y, whose squares add.
+struct NoiseParts {
+  double absolute = 0.0;  ///< [SI of y]
+  double relative = 0.0;  ///< over |y|
+};
+
 /// One of the measured curves: rows of the data, and the scenario that reproduces them.
 struct MeasuredCurve {
   std::size_t begin = 0;  ///< index of its first row among all rows
@@ -51,6 +57,7 @@ struct MeasuredCurve {
   TableLayout layout;
   std::array<std::size_t, 2> columns{};  ///< of x and y in the file, from 1
   std::vector<std::size_t> left_out;     ///< lines in which one of the columns has no number
+  NoiseParts noise;                      ///< of y; zero if it is not known, or if a column has it
   Machine machine;                       ///< as given, without its free numbers
   std::vector<std::string> overrides;    ///< of the scenario, for this curve
   CheckedScenario scenario;              ///< with these overrides; has variants if the radius is free
@@ -121,6 +128,7 @@ struct CalibrationResult {
   ModelFits procedures;               ///< fits by the model's own procedures, and this fit by their measures; empty if
                                       ///< the model has none
   FittedCurve fit;                    ///< at the rows of the data
+  std::vector<double> weights;        ///< of all rows; those of noise in proportion to y follow from the fit
   std::vector<FittedCurve> curves;    ///< one for each measured curve, with points in between
   std::size_t points = 0;             ///< rows that count
   std::size_t program_steps = 0;      ///< steps of the loading made from the data

@@ -52,6 +52,7 @@ class CalibrationReader {
     if (root.has("free") && has_scenario_) {
       made_.free = free_in(reading_, root, {made_.scenario, made_.scenario_text, named_scenario_.file});
     }
+    note_overridden();
     if (root.has("prior") && !made_.free.empty()) read_priors(reading_, root, made_.scenario, made_.free);
     faults_.throw_if_any();
     check_lengths(root);
@@ -193,7 +194,11 @@ class CalibrationReader {
     if (!x.observable.empty()) check_drive(specs[0], x, curve);
     std::vector<double> weights;
     if (faults_.size() == before && !y.values.empty()) {
-      weights = has_noise ? weights_by_noise(data, deviations ? &*deviations : nullptr, measured, y, curve.file)
+      if (has_noise && !deviations)
+        curve.noise = noise_in(reading_, data, dimension_of(y.si).value_or(Dimension::none));
+    }
+    if (faults_.size() == before && !y.values.empty()) {
+      weights = has_noise ? weights_by_noise(deviations ? &*deviations : nullptr, measured, y, curve)
                           : weights_of(measured, x, y, curve.file);
     }
     if (faults_.size() > before) return;
@@ -398,7 +403,7 @@ class CalibrationReader {
     curve.driven = drive->column;
     curve.control = drive->kind;
     curve.start = drive->start;
-    const DataProgram program = program_through(x.values, curve.control, curve.start);
+    const DataProgram program = program_through(x.values, curve.control, curve.start, x.values);
     if (!x.values.empty() && program.steps.empty()) {
       faults_.add(spec.request.where,
                   fmt::format("{}: it never changes; expected data along a loading path", spec.request.naming));
@@ -438,13 +443,22 @@ class CalibrationReader {
     return weights;
   }
 
+  /// Notes overrides of a curve that set a parameter of the fit.
+  void note_overridden() {
+    for (const MeasuredCurve& curve : made_.curves) {
+      for (const std::string& text : curve.overrides) {
+        const std::string path = text.substr(0, text.find('='));
+        if (std::ranges::none_of(made_.free, [&path](const FreeParameter& p) { return p.key.path == path; })) continue;
+        made_.notes.push_back(fmt::format("set = '{}' has no effect: [free] has '{}'", shown(text), path));
+      }
+    }
+  }
+
   /// Weights from the noise: one over the standard deviations.
-  /// @param column  with the deviations; null: `noise` gives their parts
-  [[nodiscard]] std::vector<double> weights_by_noise(const Section& data, const ColumnSpec* column,
-                                                     const MeasuredData& measured, const MeasuredQuantity& y,
-                                                     const std::string& file) {
+  /// @param column  with the deviations; null: the curve has their parts
+  [[nodiscard]] std::vector<double> weights_by_noise(const ColumnSpec* column, const MeasuredData& measured,
+                                                     const MeasuredQuantity& y, const MeasuredCurve& curve) {
     const std::size_t before = faults_.size();
-    const NoiseParts noise = noise_in(reading_, data, dimension_of(y.si).value_or(Dimension::none));
     double factor = 0.0;  // unit of the column
     if (column != nullptr) {
       MeasuredQuantity quantity{.observable = {}, .unit = measured.columns[2].unit, .si = y.si, .values = {}};
@@ -453,12 +467,13 @@ class CalibrationReader {
     std::vector<double> weights;
     std::size_t found = 0;
     for (std::size_t row = 0; row < y.values.size() && faults_.size() < before + k_most_zeros; ++row) {
-      const double deviation = column != nullptr ? factor * measured.columns[2].values[row]
-                                                 : std::hypot(noise.absolute, noise.relative * y.values[row]);
+      const double deviation = column != nullptr
+                                   ? factor * measured.columns[2].values[row]
+                                   : std::hypot(curve.noise.absolute, curve.noise.relative * y.values[row]);
       weights.push_back(1.0 / deviation);
       if (deviation > 0.0 || faults_.size() > before + found) continue;
       ++found;
-      faults_.add({file, measured.lines[row], measured.columns[column != nullptr ? 2 : 1].at[row]},
+      faults_.add({curve.file, measured.lines[row], measured.columns[column != nullptr ? 2 : 1].at[row]},
                   column != nullptr ? "a standard deviation has to be above zero"
                                     : "y = 0 has no relative noise; expected an absolute part, too");
     }

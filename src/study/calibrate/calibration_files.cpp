@@ -255,8 +255,8 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
   for (std::size_t row = 0; row < x.values.size(); ++row) {
     const double fit = result.fit.y[row];
     const double band = result.fit.band[row];
-    std::vector<double> cells{x.values[row], y.values[row],           fit, y.values[row] - fit, fit - band,
-                              fit + band,    calibration.weights[row]};
+    std::vector<double> cells{x.values[row], y.values[row],      fit, y.values[row] - fit, fit - band,
+                              fit + band,    result.weights[row]};
     if (has_machine) cells.push_back(result.particle[row]);
     if (has_several) {
       cells.push_back(static_cast<double>(&calibration.curve_of(row) - calibration.curves.data() + 1));

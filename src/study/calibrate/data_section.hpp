@@ -35,11 +35,6 @@ struct ColumnSpec {
 /// The column of standard deviations of y that `noise` names; none if it names none.
 [[nodiscard]] std::optional<ColumnSpec> noise_column_in(const Section& data);
 
-/// The two parts of a standard deviation of y, whose squares add.
-struct NoiseParts {
-  double absolute = 0.0;  ///< [SI of y]
-  double relative = 0.0;  ///< over |y|
-};
 /// Reads the parts that `noise` gives, and reports faults in them. @param of_y  dimension of y
 [[nodiscard]] NoiseParts noise_in(Reading& reading, const Section& data, Dimension of_y);
 

@@ -18,6 +18,10 @@ using Notes = std::vector<std::string>;
 
 constexpr double k_improbable = 1e-3;        // probability below which a test counts as failed
 constexpr double k_far_from_prior = 3.0;     // in standard deviations
+constexpr double k_least_moved = 1e-6;       // share of a prior's variance that errors of the covariance hide
+constexpr std::size_t k_few_rows = 10;       // fewer make the intervals of a bootstrap too narrow
+constexpr double k_far_turn = 3.0;           // error of y at a turn, over the residuals
+constexpr double k_silent_excess = 1.05;     // of the errors by rows that tell nothing of the noise
 constexpr double k_high_correlation = 0.95;  // of two parameters
 constexpr double k_poor = 0.1;               // relative standard error from which a parameter is determined poorly
 
@@ -41,22 +45,38 @@ void note_chi_squared(const CalibrationResult& result, Notes& notes) {
   }
 }
 
+/// Notes rows without any noise, which make it look smaller than it is.
+void note_silent_rows(const CalibrationResult& result, Notes& notes) {
+  const std::size_t silent = result.uncertainty.silent_rows;
+  if (silent >= result.uncertainty.degrees_of_freedom) return;
+  const auto degrees = static_cast<double>(result.uncertainty.degrees_of_freedom);
+  const double excess = std::sqrt(degrees / (degrees - static_cast<double>(silent)));
+  if (!(excess > k_silent_excess)) return;
+  notes.push_back(
+      fmt::format("{} of {} rows are zero in data and fit, where nothing touches, and tell nothing of the noise: "
+                  "without them standard errors are {:.2g} times as large",
+                  silent, result.points, excess));
+}
+
 /// Notes priors that the data contradict.
 void note_priors(const Calibration& calibration, const CalibrationResult& result, Notes& notes) {
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     const FreeParameter& parameter = calibration.free[k];
     if (!parameter.prior || !parameter.prior->is_residual()) continue;
-    const double deviation = parameter.prior->deviation(result.solution.parameters[k]);
-    if (std::abs(deviation) <= k_far_from_prior) continue;
+    const double value = result.solution.parameters[k];
+    // The fit lies between data and prior: it moves from the prior by the share of the variance that the data remove.
+    const double kept = std::pow(parameter.prior->slope(value) * result.uncertainty.standard_error(k), 2);
+    const double moved = std::sqrt(std::max(1.0 - kept, k_least_moved));
+    const double deviation = std::abs(parameter.prior->deviation(value)) / (std::isfinite(kept) ? moved : 1.0);
+    if (deviation <= k_far_from_prior) continue;
     notes.push_back(
-        fmt::format("'{}' lies {:.2g} standard deviations of its prior from its centre: data and "
-                    "prior contradict each other",
-                    parameter.key.path, std::abs(deviation)));
+        fmt::format("data and prior contradict each other: they differ in '{}' by {:.2g} standard deviations",
+                    parameter.key.path, deviation));
   }
 }
 
 /// Notes residuals that are not independent, and what that means.
-void note_residual_tests(const CalibrationResult& result, Notes& notes) {
+void note_residual_tests(const Calibration& calibration, const CalibrationResult& result, Notes& notes) {
   if (!result.residual_tests || result.residual_tests->are_independent()) return;
   const ResidualTests& tests = *result.residual_tests;
   std::string note = fmt::format(
@@ -64,7 +84,8 @@ void note_residual_tests(const CalibrationResult& result, Notes& notes) {
       "correlation of neighbours {:.2f} (p = {:.2g}); the law, or the machine, differs from the data in a way "
       "that is not noise",
       tests.runs, tests.expected_runs, tests.runs_p, tests.correlation, tests.correlation_p);
-  if (tests.correlation > 0.0 && tests.correlation < 1.0) {
+  const bool draws_blocks = result.method == IntervalMethod::bootstrap && !calibration.knows_noise();
+  if (tests.correlation > 0.0 && tests.correlation < 1.0 && !draws_blocks) {
     note += fmt::format(", and intervals are too narrow, by a factor of about {:.2g}",
                         std::sqrt((1.0 + tests.correlation) / (1.0 - tests.correlation)));
   }
@@ -93,6 +114,32 @@ void note_path(const Calibration& calibration, const MeasuredCurve& curve, const
         calibration.x.observable, noise, calibration.x.si));
   } else if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
     notes.push_back("the data begin with unloading; the particle is loaded to their first row from rest");
+  }
+}
+
+/// Notes turns that the rows may have missed, where that would change y by more than its residuals.
+void note_missed_turns(const Calibration& calibration, const CalibrationResult& result, const MeasuredCurve& curve,
+                       const std::vector<double>& x, Notes& notes) {
+  if (result.uncertainty.degrees_of_freedom == 0) return;
+  const double deviation =
+      std::sqrt(result.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom));
+  for (const Turn& turn : turns_of(x, turning_points(x), x)) {
+    const std::size_t k = turn.last_row;
+    const std::size_t row = curve.begin + k;
+    if (turn.is_known || k == 0 || k + 2 >= x.size()) continue;
+    // Within the time between two rows x goes on at the speed before the turn and comes back at that after it.
+    const double step_before = std::abs(x[k] - x[k - 1]);
+    const double step_after = std::abs(x[k + 2] - x[k + 1]);
+    const double missed = step_before * step_after / (step_before + step_after);
+    const double slope = (calibration.y.values[row + 2] - calibration.y.values[row + 1]) / step_after;
+    const double change = std::abs(missed * slope);
+    if (!(result.weights[row] * change > k_far_turn * deviation)) continue;
+    notes.push_back(fmt::format(
+        "{} turns in line {}, or beside it by up to {:.2g} {}: the rows there have no equal steps, which would show "
+        "where. That changes {} by up to {:.2g} {}: record the turn, or rows at equal times",
+        calibration.x.observable, calibration.lines[row], missed, calibration.x.si, calibration.y.observable, change,
+        calibration.y.si));
+    return;
   }
 }
 
@@ -146,6 +193,13 @@ std::vector<std::string> notes_of(const Calibration& calibration, const Calibrat
                     "intervals",
                     calibration.free.size(), result.points));
   }
+  if (result.method == IntervalMethod::bootstrap && !calibration.knows_noise() && result.points < k_few_rows) {
+    note(
+        fmt::format("a bootstrap of {} points gives intervals that are too narrow; expected {} or more, or another "
+                    "method",
+                    result.points, k_few_rows));
+  }
+  if (!calibration.knows_noise()) note_silent_rows(result, notes);
   if (calibration.knows_noise()) note_chi_squared(result, notes);
   note_priors(calibration, result, notes);
   if (!solution.has_converged) note("the search ended before its steps had vanished; the fit may not be the best");
@@ -157,9 +211,10 @@ std::vector<std::string> notes_of(const Calibration& calibration, const Calibrat
     const std::vector<double> x = x_of(calibration, curve);
     note_table_ends(calibration, curve, x, notes);
     note_path(calibration, curve, x, notes);
+    note_missed_turns(calibration, result, curve, x, notes);
   }
   note_correlations(calibration, result, notes);
-  note_residual_tests(result, notes);
+  note_residual_tests(calibration, result, notes);
   return notes;
 }
 

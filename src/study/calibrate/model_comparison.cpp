@@ -32,7 +32,7 @@ struct Parts {
   bool are_cycles = false;
 };
 
-/// Parts of the data. A cycle begins where x begins to rise.
+/// Parts of the data. A cycle begins where x moves as it did first.
 Parts parts_of(const Calibration& calibration) {
   std::vector<Part> cycles;
   std::vector<Part> stretches;
@@ -43,7 +43,8 @@ Parts parts_of(const Calibration& calibration) {
       // A turning point belongs to the stretch that ends there.
       const Part stretch{curve.begin + (k == 0 ? 0 : turns[k] + 1), curve.begin + turns[k + 1] + 1};
       stretches.push_back(stretch);
-      if (k == 0 || x[turns[k + 1]] > x[turns[k]]) {
+      const bool rises = x[turns[k + 1]] > x[turns[k]];
+      if (k == 0 || rises == (x[turns[1]] > x[turns[0]])) {
         cycles.push_back(stretch);
       } else {
         cycles.back().end = stretch.end;

@@ -131,18 +131,19 @@ class ProgramOfBranches {
 
 }  // namespace
 
-DataProgram program_through(std::span<const double> values, Step::Kind kind, double start) {
+DataProgram program_through(std::span<const double> values, Step::Kind kind, double start,
+                            std::span<const double> measured) {
   ProgramOfBranches program(values, kind, start);
-  const std::vector<std::size_t> turns = turning_points(values);
-  const std::vector<double> turning = turning_values(values, turns);
+  const std::vector<Turn> turns = turns_of(values, turning_points(values), measured);
   if (turns.size() == 1) program.pass(0, 0, start < values[0] ? -k_infinity : k_infinity, values[0]);
   for (std::size_t k = 1; k < turns.size(); ++k) {
-    // A turning point is the last row of a branch. The first and the last one do not bound the values beside them.
-    const double away = turning[k] > turning[k - 1] ? k_infinity : -k_infinity;
+    // The first and the last turn do not bound the values beside them.
+    const Turn& from = turns[k - 1];
+    const Turn& to = turns[k];
+    const double away = to.x > from.x ? k_infinity : -k_infinity;
     const bool is_first = k == 1;
     const bool is_last = k + 1 == turns.size();
-    program.pass(is_first ? 0 : turns[k - 1] + 1, turns[k], is_first ? -away : turning[k - 1],
-                 is_last ? away : turning[k]);
+    program.pass(is_first ? 0 : from.last_row + 1, to.last_row, is_first ? -away : from.x, is_last ? away : to.x);
   }
   return std::move(program).take();
 }
@@ -179,13 +180,14 @@ Measurable measurable_in(const CheckedScenario& scenario) {
 Replay::Replay(CheckedScenario scenario, ReplayColumns columns, std::vector<double> values)
     : scenario_(std::move(scenario)),
       integrator_(choose_integrator(scenario_.numerics.integrator, *make_scene(scenario_).system).used),
-      columns_(std::move(columns)) {
-  follow(std::move(values));
+      columns_(std::move(columns)),
+      measured_(std::move(values)) {
+  follow(measured_);
 }
 
 void Replay::follow(std::vector<double> values) {
   values_ = std::move(values);
-  DataProgram program = program_through(values_, columns_.control, columns_.start);
+  DataProgram program = program_through(values_, columns_.control, columns_.start, measured_);
   scenario_.loading.steps = std::move(program.steps);
   scenario_.output.times = std::move(program.times);
   rows_ = std::move(program.rows);

@@ -22,11 +22,13 @@ struct DataProgram {
 };
 
 /// Makes a program from values, with a branch between any two of their turning_points(). Noise does not turn a branch:
-/// it passes its values in rising or falling order, whatever their order in the data, and turns at turning_values().
+/// it passes its values in rising or falling order, whatever their order in the data, and turns at turns_of().
 /// Values of a branch that differ by less than 1e-12 of the largest share an instant.
-/// @param kind   kind of the steps: a ramp
-/// @param start  value of the quantity before the first step
-[[nodiscard]] DataProgram program_through(std::span<const double> values, Step::Kind kind, double start);
+/// @param kind      kind of the steps: a ramp
+/// @param start     value of the quantity before the first step
+/// @param measured  the values before corrections, see turns_of()
+[[nodiscard]] DataProgram program_through(std::span<const double> values, Step::Kind kind, double start,
+                                          std::span<const double> measured);
 
 /// Quantities that can be measured on a scenario.
 struct Measurable {
@@ -91,6 +93,7 @@ class Replay {
   CheckedScenario scenario_;
   std::string integrator_;
   ReplayColumns columns_;
+  std::vector<double> measured_;  ///< the first values
   std::vector<double> values_;
   std::vector<double> prescribed_;           ///< values that the program passes
   double resolution_ = 0.0;                  ///< of the driven column

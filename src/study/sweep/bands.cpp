@@ -256,7 +256,7 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
         add_run(run, stretch->second, own, values);
       }
     }
-    find_percentiles(own, values, request.percentiles, runs.size());
+    find_percentiles(own, values, request.percentiles, sweep.runs.size());
   }
   return bands;
 }

@@ -150,6 +150,72 @@ TEST_F(CalibrationTest, FindsTheParametersOfExactDataWithUnloadingAndReloading) 
   EXPECT_GT(result.r_squared, 1.0 - 1e-15);
 }
 
+/// Rows at equal times of a load to 0.2 R0 and an unloading at the same speed. The last row before the turn lies a
+/// share of a step before it.
+std::vector<std::string> rows_beside_the_turn(int rows, double share) {
+  std::vector<std::string> instants;
+  const double step = 1.0 / (rows + share);
+  for (int row = 0; row * step < 1.2; ++row) instants.push_back(fmt::format("{:.17g}", row * step));
+  return {"loading.steps=[{ displacement = \"0.2 R0\", duration = 1 }, { displacement = \"0.16 R0\", duration = 0.2 }]",
+          fmt::format("output.times=[{}]", fmt::join(instants, ", "))};
+}
+
+TEST_F(CalibrationTest, FindsTheParametersWhereTheTurnLiesBetweenTwoRows) {
+  write("s.toml", k_mdr);
+  write("c.toml", k_two_free);
+  for (const double share : {0.02, 0.3, 0.5, 0.8}) {
+    const std::vector<Row> rows = measure(k_mdr, rows_beside_the_turn(50, share));
+    write("d.csv", csv_of(rows, "axial.displacement[m],axial.force[N],w"));
+    const CalibrationResult result = calibrate(read());
+    EXPECT_NEAR(result.solution.parameters[0] / 1e9, 1.0, 1e-6) << share;
+    EXPECT_NEAR(result.solution.parameters[1] / 40e6, 1.0, 1e-6) << share;
+  }
+}
+
+TEST_F(CalibrationTest, SaysWhereUnevenRowsMayHaveMissedTheTurn) {
+  write("s.toml", k_mdr);
+  write("c.toml", k_two_free);
+  std::vector<Row> rows = measure(k_mdr, rows_beside_the_turn(50, 0.5));
+  const auto note = [&](const std::vector<Row>& measured) {
+    write("d.csv", csv_of(measured, "axial.displacement[m],axial.force[N],w"));
+    const std::vector<std::string> notes = calibrate(read()).notes;
+    const auto found = std::ranges::find_if(
+        notes, [](const std::string& text) { return text.find("record the turn") != std::string::npos; });
+    return found == notes.end() ? std::string() : *found;
+  };
+  EXPECT_EQ(note(rows), "");
+  rows.erase(rows.begin() + 49);  // 48 and 50 are left before the turn
+  EXPECT_NE(note(rows).find("axial.displacement turns in line 52, or beside it by up to"), std::string::npos)
+      << note(rows);
+}
+
+TEST_F(CalibrationTest, NoiseInProportionToTheForceMakesItNeitherSmallerNorLarger) {
+  // Forces a tenth too large and too small by turns. By the noise of each datum the small ones would count more: 68.6
+  // GPa.
+  std::vector<Row> rows;
+  for (int i = 0; i < 40; ++i) {
+    const double x = 1e-5 * (1 + i / 2);
+    rows.push_back({x + 1e-9 * (i % 2), 70e9 * hertz_force_per_modulus(x) * (i % 2 == 0 ? 1.1 : 0.9)});
+  }
+  write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+  write("c.toml", std::string(k_calibration) + "\n");
+  std::string text = k_calibration;
+  text.insert(text.find("[free]"), "noise = { relative = 0.1 }\n");
+  write("c.toml", text);
+  const CalibrationResult result = calibrate(read());
+  EXPECT_NEAR(result.solution.parameters[0] / 70e9, 1.0, 1e-3);
+  for (std::size_t row = 0; row < rows.size(); ++row) EXPECT_NEAR(result.weights[row] * result.fit.y[row], 10.0, 1e-4);
+}
+
+TEST_F(CalibrationTest, SaysThatAnOverrideOfAParameterOfTheFitHasNoEffect) {
+  std::string text = k_calibration;
+  text.insert(text.find("[free]"), "set = [\"material.youngs_modulus='2 GPa'\"]\n");
+  write("c.toml", text);
+  const std::vector<std::string> notes = calibrate(read()).notes;
+  EXPECT_TRUE(std::ranges::any_of(
+      notes, [](const std::string& note) { return note.find("has no effect: [free] has") != std::string::npos; }));
+}
+
 TEST_F(CalibrationTest, FindsTheParametersOfForceDrivenData) {
   write("s.toml", k_mdr);
   write("c.toml", replaced(replaced(k_two_free, "x = \"axial.displacement[m]\"", "x = \"force[kN]\""),
@@ -730,7 +796,7 @@ TEST_F(CalibrationTest, TheScenarioMayStandInTheFileItself) {
 
 TEST(DataProgram, HasAStepForEachStretchAndAnInstantForEachValue) {
   const std::vector<double> x{0.0, 1.0, 4.0, 4.0, 2.0, 3.0};
-  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0);
+  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0, x);
   ASSERT_EQ(program.steps.size(), 3U);
   EXPECT_EQ(program.steps[0].target, 4.0);
   EXPECT_EQ(program.steps[1].target, 2.0);
@@ -745,7 +811,7 @@ TEST(DataProgram, TakesNoiseForNoTurnAndPassesItsValuesInOrder) {
   std::vector<double> x{0.0};
   for (int k = 1; k <= 600; ++k) x.push_back((k <= 400 ? 0.01 * k : 8.0 - 0.01 * k) + noise(generator));
   x[1] = -0.03;
-  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0);
+  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0, x);
   ASSERT_EQ(program.steps.size(), 3U) << "behind the start, up, and down";
   const double top = program.steps[1].target;
   EXPECT_NEAR(top, 4.0, 0.02);
@@ -761,7 +827,8 @@ TEST(DataProgram, TakesNoiseForNoTurnAndPassesItsValuesInOrder) {
 }
 
 TEST(DataProgram, GoesToWhereDataOfAnUnloadingBegin) {
-  const DataProgram program = program_through(std::vector{5.0, 4.0, 3.0}, Step::Kind::displacement, 0.0);
+  const std::vector x{5.0, 4.0, 3.0};
+  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0, x);
   ASSERT_EQ(program.steps.size(), 2U);
   EXPECT_EQ(program.steps[0].target, 5.0);
   EXPECT_EQ(program.times, (std::vector{1.0, 1.5, 2.0}));

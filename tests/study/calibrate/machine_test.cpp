@@ -475,5 +475,14 @@ TEST_F(MachineCalibration, AnOutlierThatALossForgetsMakesNoBadFit) {
   EXPECT_TRUE(result.warnings.empty());
 }
 
+TEST_F(MachineCalibration, ALossWhoseScaleIsThatOfTheNoiseMakesNoBadFit) {
+  write_hertz(folder());
+  write_text(folder() / "h.toml", std::string(k_hertz) + "[fit]\nloss = \"cauchy\"\nloss_scale = 1e-5\n");
+  const CalibrationResult result = calibrate(read_calibration(folder() / "h.toml"));
+  EXPECT_GT(result.r_squared, 0.99);
+  EXPECT_LT(result.explained, k_least_explained);
+  EXPECT_TRUE(result.warnings.empty());
+}
+
 }  // namespace
 }  // namespace monograin::machine_test

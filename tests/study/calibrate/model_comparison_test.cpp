@@ -159,6 +159,33 @@ TEST_F(ModelComparisonTest, PredictionsAreThoseOfFitsToTheOtherCycle) {
               1e-6 * found.fits[0].prediction);
 }
 
+TEST_F(ModelComparisonTest, CyclesOfStrainsBelowZeroBeginAsTheyDoAboveZero) {
+  const TemporaryFolder cycles;
+  std::string csv = "strain_axial[-],stress_axial[MPa]\n";
+  for (const double x : two_cycles()) csv += fmt::format("{:.17g},{:.17g}\n", -50.0 * x, -2e5 * x - 1e8 * x * x);
+  write_text(cycles.path() / "d.csv", csv);
+  write_text(cycles.path() / "c.toml",
+             R"([scenario]
+model = "material-point"
+[scenario.material]
+preset = "MCC PH-200"
+relative_density = 0.45
+[scenario.loading]
+configuration = "die"
+steps = [{ strain = -0.04, duration = 1 }]
+[data]
+file = "d.csv"
+x = "strain_axial[-]"
+y = "stress_axial[MPa]"
+[free]
+"material.yield_pressure" = { from = "2 MPa", to = "200 MPa" }
+)");
+  const std::vector<Calibration> calibrations{read_calibration(cycles.path() / "c.toml")};
+  const ModelComparison found = compare_models(calibrations, fit(calibrations));
+  EXPECT_EQ(found.parts, 2U);
+  EXPECT_TRUE(found.are_cycles);
+}
+
 TEST_F(ModelComparisonTest, OneCycleIsTakenApartAtItsTurn) {
   data_.resize(31);
   const auto calibrations = read({k_alone});

@@ -117,8 +117,15 @@ TEST_F(LinearCalibration, HasTheGaussianPosteriorOfKnownNoiseAndANormalPrior) {
                    posterior([](const Datum& datum) { return datum.deviation; }, k_prior));
   expect_posterior(calibrate(read("noise = { absolute = \"0.005 kN\" }", k_prior_text)),
                    posterior([](const Datum&) { return 5.0; }, k_prior));
-  expect_posterior(calibrate(read("noise = { absolute = \"5 N\", relative = 0.02 }", k_prior_text)),
-                   posterior([](const Datum& datum) { return std::hypot(5.0, 0.02 * datum.y); }, k_prior));
+  // Noise in proportion to the force is that of the fitted force.
+  Gaussian expected{k_modulus, 0.0};
+  for (int round = 0; round < 20; ++round) {
+    const double modulus = expected.mean;
+    expected = posterior(
+        [modulus](const Datum& datum) { return std::hypot(5.0, 0.02 * modulus * force_per_modulus(datum.x)); },
+        k_prior);
+  }
+  expect_posterior(calibrate(read("noise = { absolute = \"5 N\", relative = 0.02 }", k_prior_text)), expected);
 }
 
 TEST_F(LinearCalibration, OfUnknownNoiseWeighsAPriorByTheNoiseThatTheResidualsShow) {
@@ -166,6 +173,17 @@ TEST_F(LinearCalibration, SaysWhereDataAndPriorContradictEachOther) {
   EXPECT_EQ(json["parameters"][0]["prior"]["values"][0], 90e9);
   EXPECT_LT(json["parameters"][0]["prior"]["deviation"], -3.0);
   EXPECT_EQ(json["fit"]["noise"], "known");
+}
+
+TEST_F(LinearCalibration, SaysThatANarrowPriorContradictsTheData) {
+  // The fit lies a tenth of the prior's deviation from its centre, and the data tell 70 GPa to about 0.5 %.
+  const auto notes_with = [this](const char* mean) {
+    const std::string prior = fmt::format("[prior]\n\"material.youngs_modulus\" = {{ normal = [\"{}\", 1e6] }}", mean);
+    return calibrate(read("noise = { absolute = \"5 N\", relative = 0.02 }", prior)).notes;
+  };
+  const auto contradicts = [](const std::string& note) { return note.find("contradict") != std::string::npos; };
+  EXPECT_TRUE(std::ranges::any_of(notes_with("80 GPa"), contradicts));
+  EXPECT_FALSE(std::ranges::any_of(notes_with("70 GPa"), contradicts));
 }
 
 TEST_F(LinearCalibration, ComparesResidualsWithTheNoiseGiven) {

@@ -94,6 +94,18 @@ TEST_F(Bands, AreNotGivenWhereRunsAreMissing) {
   }
 }
 
+TEST_F(Bands, CountRunsThatWereRefused) {
+  // One modulus in 40 may be missing, three may not.
+  for (const auto& [lowest, is_given] : {std::pair("-0.02 GPa", true), {"-0.2 GPa", false}}) {
+    std::string text = replaced(k_spread, "design = \"random\"\nruns = 40\n", "design = \"grid\"\n");
+    text = replaced(text, "{ mean = \"2 GPa\", std = \"0.2 GPa\" }",
+                    std::string("{ from = \"") + lowest + "\", to = \"2 GPa\", points = 40 }");
+    const Sweep sweep = read(text);
+    const HistoryBands found = bands(sweep, lowest);
+    EXPECT_EQ(std::isfinite(found.steps.at(0).percentiles[0][1][5]), is_given) << lowest;
+  }
+}
+
 TEST_F(Bands, ReachTheEndOfAStepWhereRunsDifferByRoundOff) {
   std::string text = k_spread;
   const auto replace = [&text](const std::string& old, const std::string& by) {
