@@ -106,9 +106,9 @@ CONTACT_COLUMNS = {
     "displacement": "displacement of the wall from first touch towards the initial position of the centre; negative: a gap",
     "overlap": "depth of the wall in the particle of the present (apparent) radius",
     "force": "force of one wall, compression positive",
-    "contact_radius": "radius of the contact area",
-    "contact_radius_deformed": "radius of the contact area with the corrections of the law",
-    "pressure": "force over contact area; 0 if the contact is open",
+    "contact_radius": "radius of the contact area; model `nonlocal`: in the reference configuration",
+    "contact_radius_deformed": "radius of the contact area in the deformed configuration, as experiments show it",
+    "pressure": "force over the area of `contact_radius`; 0 if the contact is open",
     "regime": "regime, a name of the table above",
 }
 

@@ -44,7 +44,7 @@ constexpr std::array k_events{
 
 constexpr std::array k_references{&references::k_monograin, &references::k_agarwal2018};
 
-constexpr std::array<string_view, 7> k_domain{
+constexpr std::array<string_view, 8> k_domain{
     "fitted to finite elements of E/Y 6.25 to 200; a warning below",
     "fitted to two walls up to 0.5 R0, a closed die up to 0.47 R0 and six walls up to 0.19 R0; a warning beyond 0.5 R0",
     "axial forces within 1 to 7 % (rms) of finite elements, lateral forces of a die within 6 to 12 %; at worst: the "
@@ -52,7 +52,12 @@ constexpr std::array<string_view, 7> k_domain{
     "%)",
     "walls at least 40 degrees apart: the influence of neighbours is that of a point force",
     "up to where the contacts cover 85 % of the surface (column coverage up to 1.7; stop)",
-    "up to where the stiffness becomes infinite (stop); seen for E/Y = 4 only",
+    "walls that balance each other, or a free centre: beside a fixed centre that walls push, contacts wider than half "
+    "of "
+    "R0 unload far too stiffly, and their stored energy is negative (a warning)",
+    "up to where the stiffness becomes infinite (stop): for walls that balance each other at E/Y = 4 only, for others "
+    "as "
+    "soon as wide contacts unload",
     "no friction, no adhesion, no hardening",
 };
 

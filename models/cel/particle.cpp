@@ -1,7 +1,10 @@
 #include "cel/particle.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace monograin::cel {
 namespace {
@@ -9,6 +12,7 @@ namespace {
 /// Elastic displacement, over the program's depth, of a contact that may be idle and only carry a free centre along: no
 /// integrator is exact enough to show that such a contact bears.
 constexpr double k_idle_touch = 1e-8;
+constexpr double k_gap_of_left_wall = 10.0 * k_idle_touch;  // over the depth
 
 }  // namespace
 
@@ -55,6 +59,32 @@ void Particle::give_way(std::size_t i, std::span<double> y) {
   classes[i].drive = contacts::WallDrive({0.0, 0.0, Control::force}, 1.0);
   y[i] = 0.0;
   forget();
+}
+
+std::vector<std::size_t> Particle::let_go(std::span<double> y) {
+  std::vector<std::size_t> left;
+  if (layout_.directions == 0) return left;
+  if (std::ranges::any_of(classes, [this](const ClassState& c) { return c.touches && !is_idle(c); })) return left;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const ClassState& c = classes[i];
+    if ((c.touches || c.contact.F > 0.0) && !c.takes_force() && !(c.drive.rate() > 0.0)) left.push_back(i);
+  }
+  if (left.empty()) return left;
+  const double gap = k_gap_of_left_wall * depth_;
+  Eigen::MatrixXd arms(left.size(), layout_.directions);
+  Eigen::VectorXd ways(left.size());
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    arms.row(row) = centre.lines().arm(left[k]).head(static_cast<Eigen::Index>(layout_.directions)).transpose();
+    ways[row] = -classes[left[k]].contact.u - gap;
+  }
+  const Eigen::VectorXd way = arms.completeOrthogonalDecomposition().solve(ways);
+  for (std::size_t k = 0; k < layout_.directions; ++k) y[layout_.centre(k)] += way[static_cast<Eigen::Index>(k)];
+  for (const std::size_t i : left) y[i] = -gap;
+  centre.rest_at(layout_.centre_of(y));
+  forget();
+  std::erase_if(left, [this](std::size_t i) { return !std::exchange(classes[i].touches, false); });
+  return left;
 }
 
 void Particle::prescribe(double xi, std::span<double> y) const noexcept {

@@ -182,7 +182,9 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   const double turn = (direction_of(particle_) - before).abs().maxCoeff();
   if (turn > k_same_direction || particle_.centre.follows()) particle_.centre.rest_at(particle_.layout().centre_of(y));
   solve(0.0, y);
+  const std::size_t first = log.size();
   decide_mode(particle_, motion_, 0.0, y, {}, log);
+  leave_idle_walls(0.0, y, first, log);
   // Walls that touch the fresh particle are in contact from the start, without an event.
   if (!has_begun_) {
     std::erase_if(log, [this](const Event& e) {
@@ -215,6 +217,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
                                       std::vector<Event>& log) {
   particle_.evaluate(y);
   std::vector<Guard> guards;
+  const std::size_t first = log.size();
   for (const std::size_t g : fired) {
     const Guard& guard = guards.emplace_back(guards_.list()[g]);
     if (guard.kind >= k_fold) {
@@ -231,10 +234,22 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   }
   solve(xi, y);
   decide_mode(particle_, motion_, xi, y, guards, log);
+  leave_idle_walls(xi, y, first, log);
   particle_.follow_walls(xi);
   const auto end = arm_guards(xi, y);
   if (end) log.push_back(end->event);
   return end;
+}
+
+/// Opens the contacts that no wall presses any more, once another one is lost.
+/// @param first  of the events of this instant
+void System::leave_idle_walls(double xi, std::span<double> y, std::size_t first, std::vector<Event>& log) {
+  const auto is_lost = [](const Event& event) { return event.name == "contact-lost"; };
+  if (std::none_of(log.begin() + static_cast<std::ptrdiff_t>(first), log.end(), is_lost)) return;
+  particle_.evaluate(y);
+  const std::vector<std::size_t> left = particle_.let_go(y);
+  for (const std::size_t i : left) log.push_back({"contact-lost", static_cast<int>(i)});
+  solve(xi, y);
 }
 
 // --- observables
@@ -243,13 +258,15 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
 contacts::VisibleContact System::visible(std::size_t i, double xi) const {
   const ClassState& c = particle_.classes[i];
   const double d = c.position(xi);
-  const double area = std::numbers::pi * c.contact.area;
+  // What the weak spring of the centre leaves in an open contact is no load.
+  const double load = c.touches ? c.contact.F : 0.0;
+  const double area = c.touches ? std::numbers::pi * c.contact.area : 0.0;
   const int closed = c.flows ? k_plastic : c.dent.zeta > particle_.material().a_Y ? k_unloaded : k_elastic;
   return {.displacement = d * length_,
           .overlap = (d + particle_.carried(i)) * length_,
-          .force = c.contact.F * force_unit_,
-          .contact_radius = std::sqrt(c.contact.area) * length_,
-          .pressure = area > 0.0 ? c.contact.F / area * modulus_ : 0.0,
+          .force = load * force_unit_,
+          .contact_radius = std::sqrt(area / std::numbers::pi) * length_,
+          .pressure = area > 0.0 ? load / area * modulus_ : 0.0,
           .regime = static_cast<double>(c.touches ? closed : k_open)};
 }
 

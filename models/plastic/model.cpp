@@ -83,7 +83,7 @@ constexpr Term k_open{"open", "the wall does not touch: no force"};
 constexpr Term k_fully_plastic{"fully-plastic", "the plastic zone has reached the surface all over the contact"};
 constexpr Term k_low_compressibility{"low-compressibility",
                                      "the pores close and the mean pressure rises again (die, hydrostatic)"};
-constexpr Term k_undefined{"undefined", "lateral contact of a die where the source has no law; its columns are empty"};
+constexpr Term k_undefined{"undefined", "lateral contact of a die where the source has no law; its columns are nan"};
 constexpr Term k_unloaded{"unloading", "yielded contact below its largest displacement (unloading = \"mdr\")"};
 constexpr Term k_separated{"separated", "yielded contact that has opened over its dent: no force"};
 
@@ -387,7 +387,7 @@ ProgramBounds draw_semimech(Dice& dice, DrawnMaterial& drawn) {
   return {.force = 2.0, .only_loads = !drawn.options.contains("unloading")};
 }
 
-/// Where a source has no law for a lateral contact, its columns are empty.
+/// Where a source has no law for a lateral contact, its columns are nan.
 bool lateral_may_be_undefined(const CheckedRun& /*run*/, std::size_t /*row*/, string_view column) {
   return column.starts_with("lateral.");
 }

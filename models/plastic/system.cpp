@@ -254,7 +254,7 @@ std::vector<Diagnostic> WallLaw::warnings(double /*walls*/) const {
          "largest gamma/2R", farthest_});
   }
   if (has_lateral_gap_) {
-    result.push_back({"the source has no law for lateral contacts in all of the range; their columns are empty there",
+    result.push_back({"the source has no law for lateral contacts in all of the range; their columns are nan there",
                       "largest gamma/2R", farthest_});
   }
   if (lateral_law_) {

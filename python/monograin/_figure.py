@@ -97,7 +97,7 @@ def _of_walls(history: Table) -> Optional[_Sheet]:
         ),
         _Panel(
             r"Contact area $A_c/(\pi R_0^2)$" if radius else "Contact area $A_c$ [m$^2$]",
-            _contacts(history, classes, "contact_radius"),
+            _contacts(history, classes, "contact_radius_deformed") or _contacts(history, classes, "contact_radius"),
             np.pi * radius**2 if radius else 1.0,
             is_area=True,
         ),

@@ -46,6 +46,12 @@ constexpr std::string_view k_displacement = ".displacement";
   return found == classes.end() ? classes.front() : *found;
 }
 
+/// Column of the contact radius; of the deformed particle, if the model tells it apart.
+[[nodiscard]] std::optional<std::size_t> radius_of(const Table& table, const std::string& contact) {
+  const auto deformed = table.find(contact + ".contact_radius_deformed");
+  return deformed ? deformed : table.find(contact + ".contact_radius");
+}
+
 /// Finds the columns of one contact once, to read its state from any row of a history or of an events table.
 class StateReader {
  public:
@@ -54,7 +60,7 @@ class StateReader {
         displacement_(table.find(driven + std::string(k_displacement))),
         force_(table.find(contact + ".force")),
         pressure_(table.find(contact + ".pressure")),
-        contact_radius_(table.find(contact + ".contact_radius")),
+        contact_radius_(radius_of(table, contact)),
         apparent_radius_(table.find("apparent_radius")) {}
 
   [[nodiscard]] ContactState at(std::size_t row) const {

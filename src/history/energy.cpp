@@ -39,7 +39,7 @@ std::optional<DissipationFall> largest_dissipation_fall(const Table& history, do
     double force = 0.0;
     for (const std::size_t c : forces) force += std::abs(history.at(row, c));
     round_off = std::max(round_off, k_overlap_round_off * force * radius);
-    if (dissipation > greatest) {
+    if (dissipation >= greatest) {
       greatest = dissipation;
       time_of_greatest = history.at(row, 0);
     } else if (greatest - dissipation > largest.amount) {

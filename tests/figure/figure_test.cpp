@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "figure/run_curves.hpp"
 #include "support/text_file.hpp"
 
 namespace monograin::figure_test {
@@ -93,6 +95,17 @@ class Figure : public ::testing::Test {
  private:
   fs::path folder_;
 };
+
+TEST_F(Figure, ShowsTheContactAreaOfTheDeformedParticle) {
+  write(run() / "history.csv",
+        "# R0: 0.01\n# E: 1e9\ntime[s],step,row,axial.displacement[m],axial.force[N],axial.contact_radius[m],"
+        "axial.contact_radius_deformed[m],axial.pressure[Pa],axial.regime\n"
+        "0,1,0,0,0,0,0,0,elastic\n1,1,0,0.001,50,0.001,0.002,1.6e7,elastic\n");
+  fs::remove(run() / "events.csv");
+  write(run() / "events.csv", "time[s],class,event,step,axial.displacement[m]\n");
+  const figure::RunCurves curves = figure::read_run(run());
+  EXPECT_DOUBLE_EQ(curves.contacts.at(0).states.back()[figure::Quantity::area], std::numbers::pi * 4e-6);
+}
 
 TEST_F(Figure, IsWrittenInEachFormat) {
   struct Case {

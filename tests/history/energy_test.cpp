@@ -44,6 +44,13 @@ TEST(DissipationFall, IsFoundBetweenTheRowsBeforeAndAfterAnEvent) {
   EXPECT_EQ(fall->amount, 0.25);
 }
 
+TEST(DissipationFall, BeginsAtTheLastRowOfItsMaximum) {
+  const auto fall = largest_dissipation_fall(history({{0, 0, 0, 1}, {1, 1, 1, 1}, {2, 2, 2, 1}, {3, 3, 4, 1}}), 1.0);
+  ASSERT_TRUE(fall);
+  EXPECT_EQ(fall->from, 2.0);
+  EXPECT_EQ(fall->to, 3.0);
+}
+
 TEST(DissipationFall, IsNoneWhereItOnlyRises) {
   EXPECT_FALSE(largest_dissipation_fall(history({{0, 0, 0, 0}, {1, 2, 1, 1}, {2, 3, 1, 1}}), 1.0));
 }

@@ -123,6 +123,21 @@ TEST_P(FreeCentre, FollowsThePairOfWallsThatMoveByHalf) {
   }
 }
 
+TEST_P(FreeCentre, OpensBothContactsAsSoonAsAWallLeaves) {
+  const double depth = GetParam().depth;
+  const TestRun run = run_between({ramp(2.0 * depth), ramp(-depth)}, {hold(), hold()}, "equilibrium", "auto");
+  ASSERT_EQ(run.record.status, RunStatus::complete) << run.record.message;
+  const std::vector<std::string> events = run.events();
+  EXPECT_EQ(std::ranges::count(events, "a:contact-lost"), 1);
+  EXPECT_EQ(std::ranges::count(events, "b:contact-lost"), 1);
+  for (const std::string wall : {"a", "b"}) {
+    EXPECT_EQ(run.last(wall + ".force"), 0.0) << wall;
+    if (GetParam().name != "compressible") {
+      EXPECT_EQ(run.last(wall + ".contact_radius"), 0.0) << wall;
+    }
+  }
+}
+
 const double k_root = std::sqrt(2.0) / 3.0;
 const std::vector<Eigen::Vector3d> k_tetrahedron = {{0.0, 0.0, 1.0},
                                                     {2.0 * k_root, 0.0, -1.0 / 3.0},
