@@ -77,13 +77,14 @@ struct Fitted {
 };
 
 /// Runs a calibration.
+/// @param data        texts of files of data by their names
 /// @param output      folder for the files that the program writes; empty: none are written
 /// @param confidence  confidence level in (0, 1); NaN: the level of the calibration file
-Fitted calibrate_source(const std::string& file, const std::optional<std::string>& text, const std::string& output,
-                        double confidence) {
+Fitted calibrate_source(const std::string& file, const std::optional<std::string>& text, const FileTexts& data,
+                        const std::string& output, double confidence) {
   Calibration calibration = [&] {
     const Unlocked unlocked;
-    return parse_calibration(source_of(file, text, "a calibration file"));
+    return parse_calibration(source_of(file, text, "a calibration file"), data);
   }();
   if (!std::isnan(confidence)) {
     if (!(confidence > 0.0 && confidence < 1.0)) throw std::invalid_argument("confidence: expected a number in (0, 1)");

@@ -53,11 +53,9 @@ constexpr std::array<string_view, 8> k_domain{
     "walls at least 40 degrees apart: the influence of neighbours is that of a point force",
     "up to where the contacts cover 85 % of the surface (column coverage up to 1.7; stop)",
     "walls that balance each other, or a free centre: beside a fixed centre that walls push, contacts wider than half "
-    "of "
-    "R0 unload far too stiffly, and their stored energy is negative (a warning)",
+    "of R0 unload far too stiffly, and their stored energy is negative (a warning)",
     "up to where the stiffness becomes infinite (stop): for walls that balance each other at E/Y = 4 only, for others "
-    "as "
-    "soon as wide contacts unload",
+    "as soon as wide contacts unload",
     "no friction, no adhesion, no hardening",
 };
 

@@ -61,15 +61,16 @@ void Particle::give_way(std::size_t i, std::span<double> y) {
   forget();
 }
 
-std::vector<std::size_t> Particle::let_go(std::span<double> y) {
+std::optional<std::vector<std::size_t>> Particle::let_go(std::span<double> y) {
+  if (layout_.directions == 0) return std::nullopt;
+  const auto presses = [this](const ClassState& c) { return c.touches && !is_idle(c); };
+  if (std::ranges::any_of(classes, presses)) return std::nullopt;
   std::vector<std::size_t> left;
-  if (layout_.directions == 0) return left;
-  if (std::ranges::any_of(classes, [this](const ClassState& c) { return c.touches && !is_idle(c); })) return left;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes[i];
     if ((c.touches || c.contact.F > 0.0) && !c.takes_force() && !(c.drive.rate() > 0.0)) left.push_back(i);
   }
-  if (left.empty()) return left;
+  if (left.empty()) return std::nullopt;
   const double gap = k_gap_of_left_wall * depth_;
   Eigen::MatrixXd arms(left.size(), layout_.directions);
   Eigen::VectorXd ways(left.size());
@@ -79,6 +80,7 @@ std::vector<std::size_t> Particle::let_go(std::span<double> y) {
     ways[row] = -classes[left[k]].contact.u - gap;
   }
   const Eigen::VectorXd way = arms.completeOrthogonalDecomposition().solve(ways);
+  if ((arms * way - ways).lpNorm<Eigen::Infinity>() > 0.5 * gap) return std::nullopt;  // walls on both sides
   for (std::size_t k = 0; k < layout_.directions; ++k) y[layout_.centre(k)] += way[static_cast<Eigen::Index>(k)];
   for (const std::size_t i : left) y[i] = -gap;
   centre.rest_at(layout_.centre_of(y));

@@ -123,8 +123,8 @@ class Particle {
   }
   /// Lets a free particle that no wall presses any more go from the walls that do not follow it: the weak spring, which
   /// has been stretched under load, would press it against them.
-  /// @return the contacts that it opens, without those that were open but for the spring
-  [[nodiscard]] std::vector<std::size_t> let_go(std::span<double> y);
+  /// @return the contacts that it opens, without those that were open but for the spring; none if it does not move
+  [[nodiscard]] std::optional<std::vector<std::size_t>> let_go(std::span<double> y);
   /// Lets the spring of the centre follow the walls that press under a displacement, in the mode that begins, if the
   /// program prescribes a force, too: that may vanish, and must then not be left with a spring that is stretched.
   void follow_walls(double xi);

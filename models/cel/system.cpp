@@ -247,8 +247,9 @@ void System::leave_idle_walls(double xi, std::span<double> y, std::size_t first,
   const auto is_lost = [](const Event& event) { return event.name == "contact-lost"; };
   if (std::none_of(log.begin() + static_cast<std::ptrdiff_t>(first), log.end(), is_lost)) return;
   particle_.evaluate(y);
-  const std::vector<std::size_t> left = particle_.let_go(y);
-  for (const std::size_t i : left) log.push_back({"contact-lost", static_cast<int>(i)});
+  const std::optional<std::vector<std::size_t>> opened = particle_.let_go(y);
+  if (!opened) return;
+  for (const std::size_t i : *opened) log.push_back({"contact-lost", static_cast<int>(i)});
   solve(xi, y);
 }
 
@@ -260,12 +261,13 @@ contacts::VisibleContact System::visible(std::size_t i, double xi) const {
   const double d = c.position(xi);
   // What the weak spring of the centre leaves in an open contact is no load.
   const double load = c.touches ? c.contact.F : 0.0;
-  const double area = c.touches ? std::numbers::pi * c.contact.area : 0.0;
+  const double radius = c.touches ? std::sqrt(c.contact.area) : 0.0;
+  const double area = std::numbers::pi * radius * radius;
   const int closed = c.flows ? k_plastic : c.dent.zeta > particle_.material().a_Y ? k_unloaded : k_elastic;
   return {.displacement = d * length_,
           .overlap = (d + particle_.carried(i)) * length_,
           .force = load * force_unit_,
-          .contact_radius = std::sqrt(area / std::numbers::pi) * length_,
+          .contact_radius = radius * length_,
           .pressure = area > 0.0 ? load / area * modulus_ : 0.0,
           .regime = static_cast<double>(c.touches ? closed : k_open)};
 }

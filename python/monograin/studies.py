@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
-import tempfile
 import warnings
-from typing import TYPE_CHECKING, Any, Iterator, Mapping, NamedTuple, Optional, Union
+from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -183,8 +181,8 @@ def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Opti
         KeyboardInterrupt: on Ctrl-C; all files of the folder are written then, or none.
     """
     level = float("nan") if confidence is None else confidence
-    with _data_as_files(source) as complete:
-        core = _core.calibrate(*_named_text(complete, "calibration.toml"), _folder(folder), level)
+    complete, data = _data_as_texts(source)
+    core = _core.calibrate(*_named_text(complete, "calibration.toml"), data, _folder(folder), level)
     if core.no_figure:
         warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=2)
     for warning in core.warnings:
@@ -387,28 +385,23 @@ def _named_text(source: Source, name: str) -> tuple[str, Optional[str]]:
     return os.fspath(source), None
 
 
-@contextlib.contextmanager
-def _data_as_files(source: Source) -> Iterator[Source]:
-    """Yields a calibration whose data in memory are files, as long as the context lasts."""
+def _data_as_texts(source: Source) -> tuple[Source, dict[str, str]]:
+    """Returns a calibration whose data in memory have names, and the texts of these data by name."""
     data = source.get("data") if isinstance(source, Mapping) else None
-    if not isinstance(source, Mapping) or data is None:
-        yield source
-        return
-    with tempfile.TemporaryDirectory(prefix="monograin-") as folder:
+    texts: dict[str, str] = {}
 
-        def named(curve: Any, file: str) -> Any:
-            values = curve.get("file") if isinstance(curve, Mapping) else None
-            if values is None or isinstance(values, (str, os.PathLike)):
-                return curve
-            path = os.path.join(folder, file)
-            with open(path, "w", encoding="utf-8") as output:
-                output.write(_csv(values))
-            return {**curve, "file": path}
+    def named(curve: Any, name: str) -> Any:
+        values = curve.get("file") if isinstance(curve, Mapping) else None
+        if values is None or isinstance(values, (str, os.PathLike)):
+            return curve
+        texts[name] = _csv(values)
+        return {**curve, "file": name}
 
-        if isinstance(data, (list, tuple)):
-            yield {**source, "data": [named(curve, f"data-{k + 1}.csv") for k, curve in enumerate(data)]}
-        else:
-            yield {**source, "data": named(data, "data.csv")}
+    if isinstance(source, Mapping) and isinstance(data, (list, tuple)):
+        source = {**source, "data": [named(curve, f"data-{k + 1}.csv") for k, curve in enumerate(data)]}
+    elif isinstance(source, Mapping) and data is not None:
+        source = {**source, "data": named(data, "data.csv")}
+    return source, texts
 
 
 def _csv(data: Union[Table, Mapping[str, Any], pandas.DataFrame]) -> str:
@@ -419,7 +412,8 @@ def _csv(data: Union[Table, Mapping[str, Any], pandas.DataFrame]) -> str:
     if any(column.shape != columns[0].shape or column.ndim != 1 for column in columns):
         raise ValueError(f"data of shapes {[column.shape for column in columns]}; expected columns of equal length")
     rows = (["" if np.isnan(value) else repr(float(value)) for value in row] for row in zip(*columns))
-    return "".join(",".join(cells) + "\n" for cells in ([f'"{heading}"' for heading in data], *rows))
+    headings = ['"' + str(heading).replace('"', '""') + '"' for heading in data]
+    return "".join(",".join(cells) + "\n" for cells in (headings, *rows))
 
 
 def _history(source: Union[Run, Table, Path]) -> Table:

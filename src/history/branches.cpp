@@ -212,7 +212,8 @@ struct PlaceOfTurn {
     const Line falling = line_through(x, after, last);
     const double row = (falling.at(0.0) - rising.at(0.0)) / (rising.slope - falling.slope);
     const double doubt = k_doubt_of_row * uneven + k_same_value * static_cast<double>(after);
-    if (row < static_cast<double>(before) - doubt || row > static_cast<double>(after) + doubt) continue;
+    // Lines of equal slope, as during a hold, meet nowhere.
+    if (!(row >= static_cast<double>(before) - doubt && row <= static_cast<double>(after) + doubt)) continue;
     least = uneven;
     const bool is_extreme = std::abs(row - static_cast<double>(extreme)) <= doubt;
     place = is_extreme ? PlaceOfTurn{extreme, static_cast<double>(extreme)} : PlaceOfTurn{before, row};

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <tuple>
+#include <utility>
 
 #include "numerics/quantile.hpp"
 
@@ -85,11 +87,6 @@ class Profile {
 
   /// Lets the profile begin at another minimum.
   void begin_at(const LocalMinimum& minimum) { from_ = &minimum; }
-
-  /// True if a minimum is so low that it belongs to the interval.
-  [[nodiscard]] bool is_low(const LocalMinimum& minimum) const {
-    return rise_of(minimum.cost) < uncertainty_.t_quantile * uncertainty_.t_quantile;
-  }
 
   /// End of the k-th interval on one side: value at which the profile has risen by that of t standard errors.
   /// @param is_cut  receives whether the search ended at the bound, or gave up, before that rise
@@ -179,29 +176,37 @@ class Profile {
   long evaluations_ = 0;
 };
 
-/// Extends intervals to those around another minimum, if that lies outside.
-void extend(Profile& profile, const LocalMinimum& minimum, const Uncertainty& uncertainty,
-            std::vector<Interval>& intervals) {
+/// True if a minimum is so low that it belongs to the interval of a parameter.
+bool is_low(const LeastSquaresSolution& solution, const LocalMinimum& minimum, const Uncertainty& uncertainty,
+            std::size_t k) {
+  const double t = uncertainty.t_quantile * uncertainty.excess_over_cost(k);
+  return (minimum.cost - solution.cost) / uncertainty.rise < t * t;
+}
+
+/// Extends intervals to those around another minimum that lies outside of one of them.
+void extend(Profile& profile, const LeastSquaresSolution& solution, const LocalMinimum& minimum,
+            const Uncertainty& uncertainty, std::vector<Interval>& intervals) {
+  const auto lies_outside = [&](std::size_t k) {
+    return minimum.parameters[k] < intervals[k].lower || minimum.parameters[k] > intervals[k].upper;
+  };
   bool is_outside = false;
-  for (std::size_t k = 0; k < intervals.size(); ++k) {
-    const double value = minimum.parameters[k];
-    is_outside = is_outside || value < intervals[k].lower || value > intervals[k].upper;
-  }
+  for (std::size_t k = 0; k < intervals.size(); ++k) is_outside = is_outside || lies_outside(k);
   if (!is_outside) return;
   profile.begin_at(minimum);
   for (std::size_t k = 0; k < intervals.size() && !profile.better(); ++k) {
-    if (!uncertainty.is_determined[k]) continue;
-    Interval other;
-    other.lower = profile.end(k, false, other.is_cut_below);
-    if (!profile.better()) other.upper = profile.end(k, true, other.is_cut_above);
+    if (!uncertainty.is_determined[k] || !is_low(solution, minimum, uncertainty, k)) continue;
     Interval& interval = intervals[k];
-    if (other.lower < interval.lower) {
-      interval.lower = other.lower;
-      interval.is_cut_below = other.is_cut_below;
+    // Towards the interval, the first profile has gone that way already.
+    const bool is_below = minimum.parameters[k] < interval.lower;
+    const bool is_above = minimum.parameters[k] > interval.upper;
+    bool is_cut = false;
+    if (!is_above) {
+      const double lower = profile.end(k, false, is_cut);
+      if (lower < interval.lower) std::tie(interval.lower, interval.is_cut_below) = std::pair(lower, is_cut);
     }
-    if (other.upper > interval.upper) {
-      interval.upper = other.upper;
-      interval.is_cut_above = other.is_cut_above;
+    if (!is_below && !profile.better()) {
+      const double upper = profile.end(k, true, is_cut);
+      if (upper > interval.upper) std::tie(interval.upper, interval.is_cut_above) = std::pair(upper, is_cut);
     }
   }
 }
@@ -210,9 +215,8 @@ void extend(Profile& profile, const LocalMinimum& minimum, const Uncertainty& un
 
 std::optional<LocalMinimum> minimum_beside(const LeastSquaresSolution& solution, const Uncertainty& uncertainty) {
   for (const LocalMinimum& other : solution.minima) {
-    const double rise = (other.cost - solution.cost) / uncertainty.rise;
-    if (!(rise < uncertainty.t_quantile * uncertainty.t_quantile)) continue;
     for (std::size_t k = 0; k < other.parameters.size(); ++k) {
+      if (!is_low(solution, other, uncertainty, k)) continue;
       if (std::abs(other.parameters[k] - solution.parameters[k]) > uncertainty.half_width(k)) return other;
     }
   }
@@ -270,7 +274,7 @@ ProfileIntervals profile_intervals(const LeastSquaresProblem& problem, const Lea
   }
   for (const LocalMinimum& other : solution.minima) {
     if (profile.better()) break;
-    if (has_size && profile.is_low(other)) extend(profile, other, uncertainty, result.intervals);
+    if (has_size) extend(profile, solution, other, uncertainty, result.intervals);
   }
   result.better = profile.better();
   result.evaluations = profile.evaluations();

@@ -7,10 +7,9 @@
 #include <string_view>
 
 #include "scenario/scenario.hpp"
+#include "scenario/text_file.hpp"
 
 namespace monograin {
-
-inline constexpr std::size_t k_largest_text = 16U * 1024U * 1024U;
 
 /// Parses a text; its nodes give `origin` as their file.
 /// @throws ScenarioError with one fault if the text is not TOML, is too large or nests too deeply

@@ -211,8 +211,8 @@ Step::Kind ramp_of(Control control) noexcept {
 
 CheckedScenario read_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                               FileKind kind) {
-  auto [text, name] = read_named_text(file, "a scenario file", kind);
-  return parse_scenario(std::move(text), name.string(), overrides);
+  const auto [text, name] = read_named_text(file, "a scenario file", kind);
+  return parse_scenario(text, name.string(), overrides);
 }
 
 CheckedScenario parse_scenario(std::string_view text, const std::string& origin,

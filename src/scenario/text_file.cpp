@@ -14,7 +14,6 @@
 #include <system_error>
 #include <utility>
 
-#include "scenario/document.hpp"
 #include "scenario/faults.hpp"
 
 namespace monograin {

@@ -1,6 +1,7 @@
 /// Reads and writes whole files that a user names.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -8,6 +9,9 @@
 #include <vector>
 
 namespace monograin {
+
+/// Largest size of a TOML file that is parsed [byte].
+inline constexpr std::size_t k_largest_text = 16U * 1024U * 1024U;
 
 /// Content of a file, or the reason why it cannot be read.
 struct FileText {

@@ -226,6 +226,20 @@ TEST(TurningPoints, OfUnevenRowsLieInTheExtremeRow) {
   EXPECT_EQ(turns[1].last_row, 5U);
 }
 
+TEST(TurningPoints, OfCorrectedRowsInAHoldOfTheMeasuredOnesLieInARow) {
+  // The force relaxes while the measured displacement is held; without the give of the machine x then rises.
+  Values measured{0.0, 0.2, 0.4, 0.6, 0.8};
+  measured.insert(measured.end(), 9, 1.0);
+  measured.insert(measured.end(), {0.8, 0.6, 0.4, 0.2});
+  Values x = measured;
+  const Values force{0, 2, 4, 6, 8, 10, 9.5, 9.25, 9.2, 9.2, 9.2, 9.2, 9.2, 9.2, 5, 3, 1, 0};
+  ASSERT_EQ(force.size(), x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] -= 0.01 * force[k];
+  const std::vector<Turn> turns = turns_of(x, turning_points(x), measured);
+  ASSERT_EQ(turns.size(), 3U);
+  EXPECT_NEAR(turns[1].x, 0.908, 1e-12);
+}
+
 TEST(TurningPoints, OfAHoldBetweenRowsLieOnTheHold) {
   const Values x{0.0, 0.3, 0.6, 0.9, 1.0, 1.0, 1.0, 1.0, 0.7, 0.4, 0.1};
   const std::vector<Turn> turns = turns_of(x, turning_points(x), x);

@@ -132,7 +132,7 @@ TEST_P(FreeCentre, OpensBothContactsAsSoonAsAWallLeaves) {
   EXPECT_EQ(std::ranges::count(events, "b:contact-lost"), 1);
   for (const std::string wall : {"a", "b"}) {
     EXPECT_EQ(run.last(wall + ".force"), 0.0) << wall;
-    if (GetParam().name != "compressible") {
+    if (GetParam().name != "compressible") {  // which has no contact radius
       EXPECT_EQ(run.last(wall + ".contact_radius"), 0.0) << wall;
     }
   }

@@ -69,6 +69,7 @@ void add_units(const Calibration& calibration, std::vector<Suspicion>& suspicion
       scale(suspicion.changed.*quantity, factor);
       if (quantity == &Calibration::y) {
         for (double& weight : suspicion.changed.weights) weight /= factor;
+        for (MeasuredCurve& curve : suspicion.changed.curves) curve.noise.absolute *= factor;
       }
       suspicions.push_back(std::move(suspicion));
     }

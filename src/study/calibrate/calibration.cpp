@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "history/branches.hpp"
 #include "numerics/derivatives.hpp"
 #include "scenario/faults.hpp"
 #include "study/calibrate/bad_fit.hpp"
@@ -45,6 +46,31 @@ std::vector<double> refined(std::span<const double> x, std::size_t parts) {
     result.push_back(x[i]);
   }
   return result;
+}
+
+/// Data with a row at each turn that lies between two of theirs.
+struct MeasuredPath {
+  std::vector<double> x;
+  std::vector<double> y;
+};
+MeasuredPath with_turns(const std::vector<double>& x, const std::vector<double>& y) {
+  MeasuredPath path;
+  std::size_t done = 0;
+  const auto go_to = [&](std::size_t row) {
+    for (; done <= row; ++done) {
+      path.x.push_back(x[done]);
+      path.y.push_back(y[done]);
+    }
+  };
+  for (const Turn& turn : turns_of(x, turning_points(x), x)) {
+    const std::size_t row = turn.last_row;
+    go_to(row);
+    if (turn.x == x[row] || row == 0 || row + 1 == x.size() || turn.x == x[row + 1]) continue;
+    path.x.push_back(turn.x);
+    path.y.push_back(std::lerp(y[row - 1], y[row], (turn.x - x[row - 1]) / (x[row] - x[row - 1])));
+  }
+  go_to(x.size() - 1);
+  return path;
 }
 
 /// Values of one curve, out of values that are stored row by row.
@@ -95,46 +121,30 @@ class Fit {
   Fit& operator=(const Fit&) = delete;
 
   /// The best fit; none if no parameters that were tried have a response. If the noise is not known, the priors are
-  /// weighted by the noise that the data's residuals show. If the noise is in proportion to y, it follows from the fit:
-  /// a datum that noise makes small would otherwise weigh more.
+  /// weighted by the noise that the data's residuals show. Noise in proportion to y follows from the fit: a datum that
+  /// noise makes small would otherwise weigh more.
   [[nodiscard]] std::optional<LeastSquaresSolution> search() {
-    if (has_noise_of_fit()) return search_with_noise_of_fit();
-    if (priors_.empty() || calibration_.knows_noise()) return search_once();
-    prior_weight_ = 0.0;
+    const bool seeks_prior_weight = !priors_.empty() && !calibration_.knows_noise();
+    if (seeks_prior_weight) prior_weight_ = 0.0;
     auto solution = search_once();
     for (int round = 0; solution && round < k_most_rounds; ++round) {
-      const double before = std::exchange(prior_weight_, deviation_of(problem_, solution->residuals, rows_.size()));
-      if (!(prior_weight_ > 0.0)) prior_weight_ = 0.0;
-      const LocalMinimum& start = *solution;
-      auto next = round == 0 ? search_once() : minimise_near(problem_, {&start, 1});
+      bool has_changed = failing(solution->parameters) == responses_.size() && weigh_by_response();
+      if (seeks_prior_weight) has_changed = weigh_priors(*solution) || has_changed;
+      if (!has_changed) break;
+      auto next = round == 0 && seeks_prior_weight ? search_once() : minimise_near(problem_, solution->minima);
       if (!next) break;
       next->evaluations += solution->evaluations;
       next->failures += solution->failures;
       solution = std::move(next);
-      if (std::abs(prior_weight_ - before) <= k_same_number * prior_weight_) break;
     }
     return solution;
   }
 
-  [[nodiscard]] bool has_noise_of_fit() const {
-    return std::ranges::any_of(calibration_.curves,
-                               [](const MeasuredCurve& curve) { return curve.noise.relative > 0.0; });
-  }
-
-  [[nodiscard]] std::optional<LeastSquaresSolution> search_with_noise_of_fit() {
-    auto solution = search_once();
-    for (int round = 0; solution && round < k_most_rounds; ++round) {
-      if (failing(solution->parameters) < responses_.size()) break;
-      if (!weigh_by_response()) break;
-      const LocalMinimum& start = *solution;
-      auto next = minimise_near(problem_, {&start, 1});
-      if (!next) break;
-      next->evaluations += solution->evaluations;
-      next->failures += solution->failures;
-      next->minima = std::move(solution->minima);
-      solution = std::move(next);
-    }
-    return solution;
+  /// Weights the priors by the residuals of the data. @return true if that has changed
+  bool weigh_priors(const LeastSquaresSolution& solution) {
+    const double deviation = deviation_of(problem_, solution.residuals, rows_.size());
+    const double before = std::exchange(prior_weight_, deviation > 0.0 ? deviation : 0.0);
+    return std::abs(prior_weight_ - before) > k_same_number * prior_weight_;
   }
 
   /// Sets the weights of rows with noise in proportion to y by the last response. A fit that is far below the datum,
@@ -308,6 +318,7 @@ class Fit {
   std::optional<LocalMinimum> choose_method(CalibrationResult& result) {
     using Bound = LeastSquaresSolution::Bound;
     const LeastSquaresSolution& solution = result.solution;
+    is_kinked_ = false;
     const auto reason = [&result](IntervalMethod method, std::string text) {
       result.method = method;
       result.method_reason = std::move(text);
@@ -394,9 +405,9 @@ class Fit {
     if (result.uncertainty.degrees_of_freedom == 0) return;
     const auto tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
     const bool is_independent = !tests || tests->are_independent();
-    auto block =
+    const auto length =
         is_independent ? std::size_t{1} : static_cast<std::size_t>(std::cbrt(static_cast<double>(rows_.size())) + 0.5);
-    if (calibration_.knows_noise()) block = 0;
+    const std::size_t block = calibration_.knows_noise() ? 0 : length;
     const Bootstrap drawn =
         bootstrap(problem_, result.solution, result.uncertainty, rows_.size(), block, k_bootstrap_samples, k_seed);
     result.solution.evaluations += drawn.evaluations;
@@ -475,8 +486,9 @@ class Fit {
       };
       return {data_x, rows(result.fit.y), rows(result.fit.band)};
     }
-    const std::vector<double> x = refined(data_x, parts);
-    Response response_through(calibration_, measured, x, refined(y_of(calibration_, measured), parts));
+    const MeasuredPath path = with_turns(data_x, y_of(calibration_, measured));
+    const std::vector<double> x = refined(path.x, parts);
+    Response response_through(calibration_, measured, x, refined(path.y, parts));
     LeastSquaresProblem problem = problem_;
     problem.residual_count = x.size();
     problem.residuals = [&response_through](std::span<const double> parameters, std::span<double> response) {

@@ -33,7 +33,8 @@ constexpr std::size_t k_most_zeros = 20;  // of weights, that are reported one b
 
 class CalibrationReader {
  public:
-  explicit CalibrationReader(NamedText source) : file_(std::move(source.file)), reading_{faults_} {
+  CalibrationReader(NamedText source, const FileTexts& data)
+      : file_(std::move(source.file)), data_(data), reading_{faults_} {
     made_.text = std::move(source.text);
     made_.file = file_.string();
     made_.name = file_.stem().string();
@@ -167,7 +168,8 @@ class CalibrationReader {
     const std::string name = data.text("file");
     if (name.empty()) return;
     const fs::path path = file_.parent_path() / name;
-    auto [text, problem] = read_text_file(path, k_largest_data);
+    const auto given = data_.find(name);
+    auto [text, problem] = given != data_.end() ? FileText{given->second, {}} : read_text_file(path, k_largest_data);
     if (problem.empty() && text.size() > k_largest_data) {
       problem = fmt::format("the file is too large; expected at most {} MiB", k_largest_data >> 20U);
     }
@@ -447,7 +449,7 @@ class CalibrationReader {
   void note_overridden() {
     for (const MeasuredCurve& curve : made_.curves) {
       for (const std::string& text : curve.overrides) {
-        const std::string path = text.substr(0, text.find('='));
+        const std::string_view path = trimmed(std::string_view(text).substr(0, text.find('=')));
         if (std::ranges::none_of(made_.free, [&path](const FreeParameter& p) { return p.key.path == path; })) continue;
         made_.notes.push_back(fmt::format("set = '{}' has no effect: [free] has '{}'", shown(text), path));
       }
@@ -500,6 +502,7 @@ class CalibrationReader {
   }
 
   fs::path file_;
+  const FileTexts& data_;
   FaultList faults_;
   Reading reading_;
   Calibration made_;
@@ -545,6 +548,8 @@ Calibration read_calibration(const fs::path& file) {
   return parse_calibration(read_named_text(file, "a calibration file"));
 }
 
-Calibration parse_calibration(NamedText source) { return CalibrationReader(std::move(source)).read(); }
+Calibration parse_calibration(NamedText source, const FileTexts& data) {
+  return CalibrationReader(std::move(source), data).read();
+}
 
 }  // namespace monograin

@@ -65,7 +65,8 @@ void note_priors(const Calibration& calibration, const CalibrationResult& result
     if (!parameter.prior || !parameter.prior->is_residual()) continue;
     const double value = result.solution.parameters[k];
     // The fit lies between data and prior: it moves from the prior by the share of the variance that the data remove.
-    const double kept = std::pow(parameter.prior->slope(value) * result.uncertainty.standard_error(k), 2);
+    const auto place = static_cast<Eigen::Index>(k);
+    const double kept = std::pow(parameter.prior->slope(value), 2) * result.uncertainty.cost_covariance(place, place);
     const double moved = std::sqrt(std::max(1.0 - kept, k_least_moved));
     const double deviation = std::abs(parameter.prior->deviation(value)) / (std::isfinite(kept) ? moved : 1.0);
     if (deviation <= k_far_from_prior) continue;
@@ -117,12 +118,14 @@ void note_path(const Calibration& calibration, const MeasuredCurve& curve, const
   }
 }
 
-/// Notes turns that the rows may have missed, where that would change y by more than its residuals.
+/// Notes the turn that the rows may have missed by most, if that changes y by more than its residuals.
 void note_missed_turns(const Calibration& calibration, const CalibrationResult& result, const MeasuredCurve& curve,
                        const std::vector<double>& x, Notes& notes) {
   if (result.uncertainty.degrees_of_freedom == 0) return;
   const double deviation =
       std::sqrt(result.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom));
+  double largest = k_far_turn * deviation;
+  std::string note;
   for (const Turn& turn : turns_of(x, turning_points(x), x)) {
     const std::size_t k = turn.last_row;
     const std::size_t row = curve.begin + k;
@@ -133,14 +136,15 @@ void note_missed_turns(const Calibration& calibration, const CalibrationResult& 
     const double missed = step_before * step_after / (step_before + step_after);
     const double slope = (calibration.y.values[row + 2] - calibration.y.values[row + 1]) / step_after;
     const double change = std::abs(missed * slope);
-    if (!(result.weights[row] * change > k_far_turn * deviation)) continue;
-    notes.push_back(fmt::format(
+    if (!(result.weights[row] * change > largest)) continue;
+    largest = result.weights[row] * change;
+    note = fmt::format(
         "{} turns in line {}, or beside it by up to {:.2g} {}: the rows there have no equal steps, which would show "
         "where. That changes {} by up to {:.2g} {}: record the turn, or rows at equal times",
         calibration.x.observable, calibration.lines[row], missed, calibration.x.si, calibration.y.observable, change,
-        calibration.y.si));
-    return;
+        calibration.y.si);
   }
+  if (!note.empty()) notes.push_back(std::move(note));
 }
 
 /// Notes pairs of parameters of which the data determine little more than a combination.

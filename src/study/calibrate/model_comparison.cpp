@@ -38,9 +38,10 @@ Parts parts_of(const Calibration& calibration) {
   std::vector<Part> stretches;
   for (const MeasuredCurve& curve : calibration.curves) {
     const auto x = std::span(calibration.x.values).subspan(curve.begin, curve.end - curve.begin);
-    const std::vector<std::size_t> turns = turning_points(x);
+    std::vector<std::size_t> turns;
+    for (const Turn& turn : turns_of(x, turning_points(x), x)) turns.push_back(turn.last_row);
     for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
-      // A turning point belongs to the stretch that ends there.
+      // The last row before a turn belongs to the stretch that ends there.
       const Part stretch{curve.begin + (k == 0 ? 0 : turns[k] + 1), curve.begin + turns[k + 1] + 1};
       stretches.push_back(stretch);
       const bool rises = x[turns[k + 1]] > x[turns[k]];

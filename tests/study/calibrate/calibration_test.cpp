@@ -169,6 +169,15 @@ TEST_F(CalibrationTest, FindsTheParametersWhereTheTurnLiesBetweenTwoRows) {
     const CalibrationResult result = calibrate(read());
     EXPECT_NEAR(result.solution.parameters[0] / 1e9, 1.0, 1e-6) << share;
     EXPECT_NEAR(result.solution.parameters[1] / 40e6, 1.0, 1e-6) << share;
+    // The curve of the figure passes through the fit at every row, and turns where that does.
+    const FittedCurve& curve = result.curves.at(0);
+    EXPECT_NEAR(std::ranges::max(curve.x), 0.2 * k_radius, 1e-9 * k_radius);
+    std::size_t place = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      while (place < curve.x.size() && curve.x[place] != rows[row].x) ++place;
+      ASSERT_LT(place, curve.x.size()) << row;
+      EXPECT_NEAR(curve.y[place++], result.fit.y[row], 1e-9 * rows[50].y) << share << ", row " << row;
+    }
   }
 }
 
@@ -198,7 +207,6 @@ TEST_F(CalibrationTest, NoiseInProportionToTheForceMakesItNeitherSmallerNorLarge
     rows.push_back({x + 1e-9 * (i % 2), 70e9 * hertz_force_per_modulus(x) * (i % 2 == 0 ? 1.1 : 0.9)});
   }
   write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
-  write("c.toml", std::string(k_calibration) + "\n");
   std::string text = k_calibration;
   text.insert(text.find("[free]"), "noise = { relative = 0.1 }\n");
   write("c.toml", text);
