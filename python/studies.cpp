@@ -32,36 +32,46 @@ Sweep sweep_of(const std::string& file, const std::optional<std::string>& text) 
 
 /// Runs one shard of a sweep, and writes its bands once all runs are there.
 /// @return the folder of the results, and the number of runs that it still lacks
-py::tuple sweep(const std::string& file, const std::optional<std::string>& text, const std::string& output, int threads,
-                std::size_t shard, std::size_t shard_count) {
+std::pair<fs::path, std::size_t> run_shard(const Sweep& plan, const std::string& output, int threads,
+                                           SweepShard shard) {
   if (threads < 0) throw std::invalid_argument("threads: expected 0 for one for each core, or more");
-  if (shard < 1 || shard > shard_count) throw std::invalid_argument("shard: expected (i, n) with i from 1 to n");
-  const Sweep plan = sweep_of(file, text);
-  const fs::path folder = output.empty() ? fs::path("runs") / plan.name : fs::path(output);
+  fs::path folder = output.empty() ? fs::path("runs") / plan.name : fs::path(output);
   const SweepOutcome outcome = run_interruptibly([&](const std::atomic<bool>& stop) {
-    return run_sweep(plan, {.folder = folder,
-                            .threads = threads,
-                            .shard = {shard, shard_count},
-                            .progress = [&stop](std::size_t, std::size_t) {
-                              if (stop) throw Stopped();
-                            }});
+    return run_sweep(
+        plan, {.folder = folder, .threads = threads, .shard = shard, .progress = [&stop](std::size_t, std::size_t) {
+                 if (stop) throw Stopped();
+               }});
   });
   if (outcome.runs_missing == 0 && plan.bands) {
     const Unlocked unlocked;
     static_cast<void>(write_bands(plan, bands_of(plan, folder), folder));
   }
-  return py::make_tuple(folder.string(), outcome.runs_missing);
+  return {std::move(folder), outcome.runs_missing};
 }
 
-/// Runs the missing runs of a sweep and writes its sensitivities. @return the folder of the results
-std::string sensitivity(const std::string& file, const std::optional<std::string>& text, const std::string& output,
-                        int threads, double confidence) {
-  const py::tuple swept = sweep(file, text, output, threads, 1, 1);
-  const std::string folder = swept[0].cast<std::string>();
+py::tuple sweep(const std::string& file, const std::optional<std::string>& text, const std::string& output, int threads,
+                std::size_t shard, std::size_t shard_count) {
+  if (shard < 1 || shard > shard_count) throw std::invalid_argument("shard: expected (i, n) with i from 1 to n");
+  const auto [folder, missing] = run_shard(sweep_of(file, text), output, threads, {shard, shard_count});
+  return py::make_tuple(folder.string(), missing);
+}
+
+/// Runs the missing runs of a sweep and writes its sensitivities.
+/// @return the folder of the results, and warnings
+py::tuple sensitivity(const std::string& file, const std::optional<std::string>& text, const std::string& output,
+                      int threads, double confidence) {
   const Sweep plan = sweep_of(file, text);
-  const Unlocked unlocked;
-  static_cast<void>(write_sensitivities(plan, sensitivities_of(plan, folder, confidence), folder));
-  return folder;
+  const fs::path folder = run_shard(plan, output, threads, {1, 1}).first;
+  std::vector<std::string> warnings;
+  {
+    const Unlocked unlocked;
+    const std::vector<ResultSensitivity> found = sensitivities_of(plan, folder, confidence);
+    static_cast<void>(write_sensitivities(plan, found, folder));
+    for (const ResultSensitivity& result : found) {
+      warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
+    }
+  }
+  return py::make_tuple(folder.string(), warnings);
 }
 
 /// Result of a calibration, in memory.

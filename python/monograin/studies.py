@@ -50,6 +50,9 @@ def sweep(
 def sensitivity(source: Source, folder: Optional[Path] = None, *, threads: int = 0, confidence: float = 0.95) -> Table:
     """Computes how much each key contributes to the spread of results, as ``monograin sensitivity`` does.
 
+    Results that runs lack, that runs took before the end of their programs, or that are the same in every run, give a
+    ``RuntimeWarning``.
+
     Args:
         source: a sweep as for :func:`sweep`, of design ``saltelli`` or ``morris``, with formulas of ``results``.
         folder: folder of the results, as for :func:`sweep`. Runs already in it are not repeated.
@@ -69,7 +72,9 @@ def sensitivity(source: Source, folder: Optional[Path] = None, *, threads: int =
     """
     if not 0.0 < confidence < 1.0:
         raise ValueError("confidence: expected a number in (0, 1)")
-    where = _core.sensitivity(*_named_text(source, "sweep.toml"), _folder(folder), threads, confidence)
+    where, remarks = _core.sensitivity(*_named_text(source, "sweep.toml"), _folder(folder), threads, confidence)
+    for remark in remarks:
+        warnings.warn(remark, RuntimeWarning, stacklevel=2)
     return Table.read_csv(os.path.join(where, "sensitivity.csv"))
 
 

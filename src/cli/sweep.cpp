@@ -128,11 +128,7 @@ int sensitivity(const SensitivityOptions& options) {
   const std::string no_figure = write_sensitivities(plan, found, folder);
   print_data("{}", sensitivity_text(plan, found));
   for (const ResultSensitivity& result : found) {
-    if (result.samples() == sample_count(plan)) continue;
-    say("warning: {}: {} of {} samples count; of the others a run has no value, see its reason in {}: this can bias "
-        "the "
-        "result\n",
-        result.result, result.samples(), sample_count(plan), (folder / "results.csv").string());
+    for (const std::string& warning : result.warnings) say("warning: {}\n", warning);
   }
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   say("{}: sensitivities -> {}\n", plan.name, folder.string());

@@ -162,6 +162,26 @@ TEST_F(SweepCommand, WarnsOfSamplesThatHaveNoValue) {
   EXPECT_NE(text("stderr.txt").find("of 16 samples count"), std::string::npos) << text("stderr.txt");
 }
 
+TEST_F(SweepCommand, WarnsOfResultsThatAreAlwaysTheSame) {
+  std::string indices = k_indices;
+  indices.replace(indices.find("end.work / max.work"), 19, "max.axial.force - max.axial.force");
+  write_text(path("indices.toml"), index_file(indices));
+  EXPECT_EQ(monograin("sensitivity indices.toml").code, 0) << text("stderr.txt");
+  EXPECT_NE(text("stderr.txt").find("it is 0 in every run, and has no sensitivities"), std::string::npos)
+      << text("stderr.txt");
+  EXPECT_EQ(text("stderr.txt").find("ended before"), std::string::npos) << text("stderr.txt");
+}
+
+TEST_F(SweepCommand, WarnsOfRunsThatEndedBeforeTheirPrograms) {
+  std::string deep = index_file();
+  const std::size_t at = deep.find("displacement = ");
+  deep.replace(at, deep.find(',', at) - at, "displacement = \"0.49 R0\"");
+  deep.replace(deep.find("[\"simple\"]"), 10, "[\"hydrostatic\"]");
+  write_text(path("indices.toml"), deep);
+  EXPECT_EQ(monograin("sensitivity indices.toml").code, 0) << text("stderr.txt");
+  EXPECT_NE(text("stderr.txt").find("runs ended before their programs did"), std::string::npos) << text("stderr.txt");
+}
+
 TEST_F(SweepCommand, RunsEveryReadySweep) {
   for (const auto& entry : fs::directory_iterator(fs::path(MONOGRAIN_SOURCE_DIR) / "scenarios/sweeps")) {
     if (entry.path().extension() != ".toml") continue;

@@ -168,11 +168,7 @@ class CalibrationReader {
     const std::string name = data.text("file");
     if (name.empty()) return;
     const fs::path path = file_.parent_path() / name;
-    const auto given = data_.find(name);
-    auto [text, problem] = given != data_.end() ? FileText{given->second, {}} : read_text_file(path, k_largest_data);
-    if (problem.empty() && text.size() > k_largest_data) {
-      problem = fmt::format("the file is too large; expected at most {} MiB", k_largest_data >> 20U);
-    }
+    const auto [text, problem] = text_of_data(name, path);
     if (!problem.empty()) {
       return faults_.add(data.value_place("file"),
                          fmt::format("file = \"{}\": {} ({}); expected a path relative to this file", shown(name),
@@ -211,6 +207,16 @@ class CalibrationReader {
     add_quantity(y, specs[1], made_.y);
     note_reading(curve, specs, {&x, &y}, measured.columns);
     made_.curves.push_back(std::move(curve));
+  }
+
+  /// Text of a file of data, or why there is none.
+  [[nodiscard]] FileText text_of_data(const std::string& name, const fs::path& path) const {
+    const auto given = data_.find(name);
+    FileText read = given != data_.end() ? FileText{given->second, {}} : read_text_file(path, k_largest_data);
+    if (read.problem.empty() && read.text.size() > k_largest_data) {
+      read.problem = fmt::format("the file is too large; expected at most {} MiB", k_largest_data >> 20U);
+    }
+    return read;
   }
 
   template <class T>

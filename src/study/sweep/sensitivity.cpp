@@ -13,10 +13,12 @@
 #include "figure/chart.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/page.hpp"
+#include "history/run.hpp"
 #include "history/table.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "study/formula/expression.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -139,6 +141,46 @@ using Style = figure::ChartSeries::Style;
   return table;
 }
 
+/// Number of samples in the sweep's design.
+[[nodiscard]] std::size_t sample_count(const Sweep& sweep) {
+  return sweep.runs.size() / (sweep.factors.size() + (is_morris(sweep) ? 1 : 2));
+}
+
+/// @param values  of the result, one for each run
+[[nodiscard]] std::vector<std::string> warnings_of(const Sweep& sweep, const ResultSensitivity& found,
+                                                   const std::vector<double>& values, const Table& results) {
+  std::vector<std::string> warnings;
+  if (found.samples() != sample_count(sweep)) {
+    warnings.push_back(
+        fmt::format("{}: {} of {} samples count; of the others a run has no value, see its reason in results.csv: this "
+                    "can bias the result",
+                    found.result, found.samples(), sample_count(sweep)));
+  }
+  const std::vector<double> statuses = results.column("status");
+  const std::vector<std::string>& words = results.columns()[*results.find("status")].labels;
+  std::size_t ended_early = 0;
+  double lowest = k_infinity;
+  double highest = -k_infinity;
+  for (std::size_t run = 0; run < values.size(); ++run) {
+    if (!std::isfinite(values[run])) continue;
+    lowest = std::min(lowest, values[run]);
+    highest = std::max(highest, values[run]);
+    if (words[static_cast<std::size_t>(statuses[run])] != to_string(RunStatus::complete)) ++ended_early;
+  }
+  if (ended_early > 0) {
+    warnings.push_back(
+        fmt::format("{}: {} of {} runs ended before their programs did, and count with what they had reached; see "
+                    "their reasons in results.csv: this can bias the result",
+                    found.result, ended_early, values.size()));
+  }
+  if (lowest == highest) {
+    warnings.push_back(
+        fmt::format("{}: it is {:.6g} in every run, and has no sensitivities{}", found.result, lowest,
+                    lowest == 0.0 ? "; where compression is negative, max. is the start of the program" : ""));
+  }
+  return warnings;
+}
+
 [[nodiscard]] figure::Chart chart_of(const Sweep& sweep, const std::vector<ResultSensitivity>& found) {
   figure::Chart chart;
   for (const ResultSensitivity& result : found) {
@@ -166,13 +208,10 @@ std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const fs::pa
     } else {
       result.sobol = sobol_indices(values, sweep.factors.size(), confidence);
     }
+    result.warnings = warnings_of(sweep, result, values, results);
     found.push_back(std::move(result));
   }
   return found;
-}
-
-std::size_t sample_count(const Sweep& sweep) {
-  return sweep.runs.size() / (sweep.factors.size() + (is_morris(sweep) ? 1 : 2));
 }
 
 std::string sensitivity_text(const Sweep& sweep, const std::vector<ResultSensitivity>& found) {

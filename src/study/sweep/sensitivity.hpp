@@ -15,6 +15,7 @@ struct ResultSensitivity {
   std::string result;  ///< its formula
   SobolIndices sobol{};
   MorrisEffects morris{};
+  std::vector<std::string> warnings{};  ///< why they are not to be trusted, a sentence each
 
   [[nodiscard]] std::size_t samples() const noexcept { return sobol.samples + morris.samples; }
 };
@@ -25,9 +26,6 @@ struct ResultSensitivity {
 /// @throws std::invalid_argument if the design of the sweep gives no sensitivities
 [[nodiscard]] std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const std::filesystem::path& folder,
                                                               double confidence);
-
-/// Number of samples in the sweep's design.
-[[nodiscard]] std::size_t sample_count(const Sweep& sweep);
 
 /// Sensitivities as text for the terminal.
 [[nodiscard]] std::string sensitivity_text(const Sweep& sweep, const std::vector<ResultSensitivity>& found);
