@@ -259,11 +259,12 @@ std::vector<Turn> turns_of(std::span<const double> x, std::span<const std::size_
   std::vector<Turn> turns;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const std::size_t row = points[k];
-    const bool is_end = k == 0 || k + 1 == points.size();
-    if (!is_end && noise > 0.0) {
+    if (k == 0 || k + 1 == points.size()) {
+      turns.push_back({row, x[row]});
+    } else if (noise > 0.0) {
       turns.push_back({row, smoothed_at(x, points[k - 1], row, points[k + 1], noise)});
     } else {
-      turns.push_back(is_end ? Turn{row, x[row]} : turn_beside(x, points[k - 1], row, points[k + 1], measured));
+      turns.push_back(turn_beside(x, points[k - 1], row, points[k + 1], measured));
     }
   }
   return turns;

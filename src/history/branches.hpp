@@ -53,9 +53,7 @@ struct Turn {
 /// them. Without noise the lines need at least three rows in equal steps on each side; otherwise x turns in the extreme
 /// row. The first and the last row have their own x.
 /// @param points    turning_points() of x
-/// @param measured  x of the same rows before corrections, whose steps show where a curve without noise turns; it may
-/// be
-///                  farthest in another row
+/// @param measured  x of the same rows before corrections: its steps show where a curve without noise turns
 [[nodiscard]] std::vector<Turn> turns_of(std::span<const double> x, std::span<const std::size_t> points,
                                          std::span<const double> measured);
 

@@ -213,14 +213,19 @@ void extend(Profile& profile, const LeastSquaresSolution& solution, const LocalM
 
 }  // namespace
 
-std::optional<LocalMinimum> minimum_beside(const LeastSquaresSolution& solution, const Uncertainty& uncertainty) {
+std::optional<ValueBeside> value_beside(const LeastSquaresSolution& solution, const Uncertainty& uncertainty) {
+  std::optional<ValueBeside> farthest;
+  double largest = 1.0;  // distance over the half-width
   for (const LocalMinimum& other : solution.minima) {
     for (std::size_t k = 0; k < other.parameters.size(); ++k) {
-      if (!is_low(solution, other, uncertainty, k)) continue;
-      if (std::abs(other.parameters[k] - solution.parameters[k]) > uncertainty.half_width(k)) return other;
+      const double value = other.parameters[k];
+      const double distance = std::abs(value - solution.parameters[k]) / uncertainty.half_width(k);
+      if (!(distance > largest) || !is_low(solution, other, uncertainty, k)) continue;
+      largest = distance;
+      farthest = ValueBeside{k, value};
     }
   }
-  return std::nullopt;
+  return farthest;
 }
 
 CostCheck check_cost(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,

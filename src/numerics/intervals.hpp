@@ -34,10 +34,16 @@ struct CostCheck {
 [[nodiscard]] CostCheck check_cost(const LeastSquaresProblem& problem, const LeastSquaresSolution& solution,
                                    const Uncertainty& uncertainty);
 
-/// A minimum outside of the intervals of the covariance, whose cost is so low that it belongs to them; none if there is
-/// none.
-[[nodiscard]] std::optional<LocalMinimum> minimum_beside(const LeastSquaresSolution& solution,
-                                                         const Uncertainty& uncertainty);
+/// Value of a parameter at another minimum.
+struct ValueBeside {
+  std::size_t parameter = 0;
+  double value = 0.0;
+};
+
+/// The value farthest outside of its interval by the covariance, at a minimum whose cost is so low that it belongs
+/// there; none if there is none.
+[[nodiscard]] std::optional<ValueBeside> value_beside(const LeastSquaresSolution& solution,
+                                                      const Uncertainty& uncertainty);
 
 struct Interval {
   double lower = 0.0;

@@ -158,7 +158,7 @@ TEST(Intervals, OfAProfileHoldEveryMinimumThatIsLowEnough) {
     };
     const auto [solution, uncertainty] = fitted(problem);
     ASSERT_NEAR(solution.parameters[0], 1.0, 1e-6);
-    const auto other = minimum_beside(solution, uncertainty);
+    const auto other = value_beside(solution, uncertainty);
     const ProfileIntervals found = profile_intervals(problem, solution, uncertainty);
     // At -1 the sum of squares has risen by 4 tilt^2: 1 and 36 times that at one standard error.
     EXPECT_EQ(other.has_value(), tilt == 0.5);

@@ -128,7 +128,8 @@ class Fit {
     if (seeks_prior_weight) prior_weight_ = 0.0;
     auto solution = search_once();
     for (int round = 0; solution && round < k_most_rounds; ++round) {
-      bool has_changed = failing(solution->parameters) == responses_.size() && weigh_by_response();
+      bool has_changed =
+          has_noise_of_fit() && failing(solution->parameters) == responses_.size() && weigh_by_response();
       if (seeks_prior_weight) has_changed = weigh_priors(*solution) || has_changed;
       if (!has_changed) break;
       auto next = round == 0 && seeks_prior_weight ? search_once() : minimise_near(problem_, solution->minima);
@@ -138,6 +139,11 @@ class Fit {
       solution = std::move(next);
     }
     return solution;
+  }
+
+  [[nodiscard]] bool has_noise_of_fit() const {
+    return std::ranges::any_of(calibration_.curves,
+                               [](const MeasuredCurve& curve) { return curve.noise.relative > 0.0; });
   }
 
   /// Weights the priors by the residuals of the data. @return true if that has changed
@@ -335,11 +341,11 @@ class Fit {
                          result.uncertainty.condition));
       return std::nullopt;
     }
-    if (const auto other = minimum_beside(solution, result.uncertainty)) {
-      const std::size_t k = farthest_parameter(*other, result);
+    if (const auto other = value_beside(solution, result.uncertainty)) {
+      const FreeParameter& parameter = calibration_.free[other->parameter];
       reason(IntervalMethod::profile,
-             fmt::format("another fit is nearly as good, with '{}' = {:.4g} {}", calibration_.free[k].key.path,
-                         other->parameters[k] / calibration_.free[k].unit_factor, calibration_.free[k].unit));
+             fmt::format("another fit is nearly as good, with '{}' = {:.4g} {}", parameter.key.path,
+                         other->value / parameter.unit_factor, parameter.unit));
       return std::nullopt;
     }
     CostCheck check = check_cost(problem_, solution, result.uncertainty);
@@ -356,19 +362,6 @@ class Fit {
                     std::abs(check.at) == 1.0 ? "" : "s", calibration_.free[check.parameter].key.path, check.ratio));
     is_kinked_ = check.shape == CostShape::kinked;
     return check.better;
-  }
-
-  /// The parameter in which a minimum differs most from the solution, in standard errors.
-  [[nodiscard]] static std::size_t farthest_parameter(const LocalMinimum& other, const CalibrationResult& result) {
-    std::size_t farthest = 0;
-    double largest = 0.0;
-    for (std::size_t k = 0; k < other.parameters.size(); ++k) {
-      const double distance = std::abs(other.parameters[k] - result.solution.parameters[k]);
-      if (!(distance / result.uncertainty.standard_error(k) > largest)) continue;
-      largest = distance / result.uncertainty.standard_error(k);
-      farthest = k;
-    }
-    return farthest;
   }
 
   static void covariance_intervals(CalibrationResult& result) {
