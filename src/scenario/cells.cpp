@@ -41,6 +41,21 @@ std::size_t closing_quote(std::string_view line, std::size_t begin, char separat
   return is_closed ? at : std::string_view::npos;
 }
 
+/// True if the other sign than the decimal one marks thousands in a number without its sign: "1.100,5", "1.250.000".
+/// "1.100" alone may as well have a decimal point, and is no such number.
+bool has_thousands(std::string_view digits, char decimal) {
+  const std::size_t end = std::min(digits.find(decimal), digits.size());
+  const std::string_view whole = digits.substr(0, end);
+  const char mark = decimal == '.' ? ',' : '.';
+  const std::size_t first = whole.find(mark);
+  if (first == std::string_view::npos || first == 0 || first > 3 || whole.size() % 4 != first % 4) return false;
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    const bool is_mark = k >= first && (k - first) % 4 == 0;
+    if (is_mark ? whole[k] != mark : whole[k] < '0' || whole[k] > '9') return false;
+  }
+  return end < digits.size() || whole.size() > first + 4;
+}
+
 }  // namespace
 
 std::string_view take_line(std::string_view& text) {
@@ -83,21 +98,22 @@ std::vector<Cell> cells_of(std::string_view line, char separator) {
 
 std::optional<double> number_in(std::string_view text, char decimal) noexcept {
   if (text.starts_with('+')) text.remove_prefix(1);
+  const bool is_negative = text.starts_with('-') || text.starts_with(k_minus_sign);
+  if (is_negative) text.remove_prefix(text.starts_with('-') ? 1 : k_minus_sign.size());
+  if (text.starts_with('-')) return std::nullopt;
   std::array<char, k_longest_number> digits{};
-  if (decimal != '.' || text.starts_with(k_minus_sign)) {
-    const std::size_t sign = text.starts_with(k_minus_sign) ? 1 : 0;
-    if (sign > 0) text.remove_prefix(k_minus_sign.size());
-    const bool has_two_signs = sign > 0 && text.starts_with('-');
-    const bool has_other_point = decimal != '.' && text.find('.') != std::string_view::npos;
-    if (has_two_signs || has_other_point || text.size() >= digits.size()) return {};
-    digits.front() = '-';
-    std::ranges::replace_copy(text, digits.begin() + static_cast<std::ptrdiff_t>(sign), decimal, '.');
-    text = {digits.data(), text.size() + sign};
+  const char mark = decimal == '.' ? ',' : '.';
+  if (decimal != '.' || text.find(mark) != std::string_view::npos) {
+    const bool is_grouped = has_thousands(text, decimal);
+    if (text.size() >= digits.size() || (!is_grouped && text.find(mark) != std::string_view::npos)) return std::nullopt;
+    const auto end = std::ranges::remove_copy(text, digits.begin(), mark).out;
+    std::replace(digits.begin(), end, decimal, '.');
+    text = {digits.data(), static_cast<std::size_t>(end - digits.begin())};
   }
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  return is_negative ? -value : value;
 }
 
 std::string_view without_byte_order_mark(std::string_view text) noexcept {

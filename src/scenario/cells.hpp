@@ -24,7 +24,9 @@ struct Cell {
 [[nodiscard]] std::vector<Cell> cells_of(std::string_view line, char separator = ',');
 
 /// Parses a text that is a finite number as a whole, whatever the locale; none otherwise.
-/// @param decimal  '.' or ','; the other character is not allowed in a number
+/// @param decimal  '.' or ','. The other one may mark thousands: "1.100,5", "1.250.000"; it is refused in "1.100",
+/// which
+///                 may mean 1.1.
 [[nodiscard]] std::optional<double> number_in(std::string_view text, char decimal = '.') noexcept;
 
 /// The text without a byte order mark at its beginning.

@@ -28,7 +28,8 @@ bool is_missing(std::string_view text) {
 std::string advice_for(std::string_view text, char decimal) {
   const char other = decimal == '.' ? ',' : '.';
   if (text.find(other) == std::string_view::npos) return {};
-  if (text.find(decimal) != std::string_view::npos) return "; expected numbers without separators of thousands";
+  if (text.find(decimal) != std::string_view::npos)
+    return "; expected no thousands separators, or groups of three digits";
   if (number_in(text, other)) return fmt::format("; the decimal sign of the rows above is '{}'", decimal);
   return {};
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "scenario/cells.hpp"
 #include "scenario/document.hpp"
 #include "scenario/overrides.hpp"
 #include "scenario/units.hpp"
@@ -299,6 +300,32 @@ std::optional<Section::Value> Section::read_texts(const KeySpec& spec, const tom
     }
   }
   return texts;
+}
+
+void Section::expect_like_units(std::initializer_list<std::string_view> keys) {
+  std::vector<std::pair<std::string_view, const toml::node*>> values;
+  for (const std::string_view key : keys) {
+    const toml::node* node = origin_.table->get(key);
+    if (node == nullptr) continue;
+    if (const auto* array = node->as_array()) {
+      for (const toml::node& entry : *array) values.emplace_back(key, &entry);
+    } else {
+      values.emplace_back(key, node);
+    }
+  }
+  const auto number_of = [](const toml::node& node) {
+    const auto text = node.value<std::string>();
+    return text ? number_in(trimmed(*text)) : as_number(node);
+  };
+  const auto with_unit = std::ranges::find_if(values, [&](const auto& value) { return !number_of(*value.second); });
+  if (with_unit == values.end()) return;
+  for (const auto& [key, node] : values) {
+    if (number_of(*node).value_or(0.0) == 0.0) continue;
+    reading_.faults.add(place_of(node->source(), origin_.place),
+                        fmt::format("{} = {}: a number without a unit beside {}; expected a unit for each", key,
+                                    shown(*node), shown(*with_unit->second)));
+    return;
+  }
 }
 
 void Section::check_tables(const KeySpec& spec, const toml::node& node) {

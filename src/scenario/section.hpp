@@ -64,6 +64,10 @@ class Section {
   /// The tables of the array below a key, without entries that are no tables.
   [[nodiscard]] std::vector<Origin> tables(std::string_view key, const std::string& label) const;
 
+  /// Reports a number without a unit under these keys if a value beside it has one: 0.1 beside "1 GPa" would be 0.1 Pa.
+  /// Zero needs no unit.
+  void expect_like_units(std::initializer_list<std::string_view> keys);
+
   [[nodiscard]] const SourceLocation& place() const noexcept { return origin_.place; }
   [[nodiscard]] SourceLocation key_place(std::string_view key) const;
   [[nodiscard]] SourceLocation value_place(std::string_view key) const;

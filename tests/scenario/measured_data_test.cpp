@@ -8,8 +8,11 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "scenario/cells.hpp"
 
 namespace monograin::measured_data_test {
 namespace {
@@ -293,6 +296,21 @@ TEST(MachineFiles, MayWriteMinusAsItsOwnSign) {
   EXPECT_EQ(read("Weg,Kraft\n\xE2\x88\x92-1.5,2\n").faults.size(), 1U);
 }
 
+TEST(MachineFiles, MayMarkThousands) {
+  const Outcome german = read("Weg;Kraft\n0,5;998,25\n1,5;1.100,5\n-2,5;1.234.567\n");
+  EXPECT_EQ(german.faults, Cells());
+  EXPECT_EQ(german.data.layout.separator, ';');
+  EXPECT_EQ(german.data.columns[1].values, (std::vector{998.25, 1100.5, 1234567.0}));
+  const Outcome english = read("Weg,Kraft\n0.5,998.25\n1.5,\"1,100.5\"\n2.5,\"-12,345,678\"\n");
+  EXPECT_EQ(english.faults, Cells());
+  EXPECT_EQ(english.data.columns[1].values, (std::vector{998.25, 1100.5, -12345678.0}));
+  // 1100 or 1.1: only the user knows.
+  EXPECT_EQ(read("Weg;Kraft\n0,5;1.100\n1,5;2,5\n").faults.size(), 1U);
+  for (const char* text : {"1.10,5", "1100.200,5", ".100,5", "1..100,5", "1.1000,5", "1.100.20"}) {
+    EXPECT_EQ(number_in(text, ','), std::nullopt) << text;
+  }
+}
+
 struct FaultCase {
   const char* name;
   std::string bytes;
@@ -314,8 +332,9 @@ const std::vector<FaultCase> k_faults{
      {"d.csv:1:1: it holds zero bytes, as no text does; expected the table exported as text, for example as CSV"}},
     {"CutOff", "\xFF\xFEW\0e", {"d.csv:1:1: it begins as UTF-16LE and is not: it may be cut off"}},
     {"Thousands",
-     "Weg;Kraft\n0,5;1.234,5\n1,5;2,5\n2,5;2,5\n",
-     {"d.csv:2:5: Kraft = 1.234,5: expected a finite number; expected numbers without separators of thousands"}},
+     "Weg;Kraft\n0,5;12.34,5\n1,5;2,5\n2,5;2,5\n",
+     {"d.csv:2:5: Kraft = 12.34,5: expected a finite number; expected no thousands separators, or groups of three "
+      "digits"}},
     {"MixedSigns",
      "Weg;Kraft\n0.5;1.5\n0.6;1,5\n0.7;2.5\n",
      {"d.csv:3:5: Kraft = 1,5: expected a finite number; the decimal sign of the rows above is '.'"}},

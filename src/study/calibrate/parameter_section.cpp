@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -13,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "scenario/cells.hpp"
 #include "scenario/document.hpp"
 #include "scenario/edit.hpp"
 #include "scenario/plain_paths.hpp"
@@ -93,7 +93,8 @@ std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, 
     return is_compliance && node != nullptr && node->is_string() ? KeySpec::Kind::text : KeySpec::Kind::quantity;
   };
   const Keys keys = bounds_keys(number, {kind_of_bound("from"), kind_of_bound("to"), kind_of_bound("start")});
-  const Section bounds(reading, origin, keys);
+  Section bounds(reading, origin, keys);
+  bounds.expect_like_units({"from", "to", "start"});
   const auto bound = [&](std::string_view key) {
     return kind_of_bound(key) == KeySpec::Kind::text ? compliance_in(reading, bounds, key).value : bounds.number(key);
   };
@@ -127,16 +128,9 @@ std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, 
   return parameter;
 }
 
-std::optional<double> bare_number(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 std::optional<double> plain_number(Reading& reading, const Section& section, std::string_view key, std::size_t entry,
                                    const std::string& text) {
-  const auto number = bare_number(text);
+  const auto number = number_in(text);
   if (!number) {
     reading.faults.add(
         section.value_place(key, entry),
@@ -150,7 +144,7 @@ std::optional<double> plain_number(Reading& reading, const Section& section, std
 /// A value of a parameter in a list: a number in SI, or a text with a unit.
 std::optional<double> value_in(Reading& reading, const Section& section, std::string_view key, std::size_t entry,
                                const NumberKey& number, const std::string& text) {
-  if (const auto bare = bare_number(text)) return bare;
+  if (const auto bare = number_in(text)) return bare;
   if (number.path == k_compliance) {
     const ParsedCompliance parsed = parse_compliance(text);
     if (!parsed.value) {
@@ -202,7 +196,7 @@ void read_prior(Reading& reading, const Section& priors, FreeParameter& paramete
   const Section::Origin origin = priors.table(parameter.key.path, fmt::format("\"{}\"", parameter.key.path));
   const Keys keys = distribution_keys();
   const std::size_t before = reading.faults.size();
-  const Section distribution(reading, origin, keys);
+  Section distribution(reading, origin, keys);
   if (reading.faults.size() > before) return;
   constexpr std::array k_kinds{Prior::Kind::normal, Prior::Kind::lognormal, Prior::Kind::uniform};
   std::vector<Prior::Kind> given;
@@ -228,6 +222,7 @@ void read_prior(Reading& reading, const Section& priors, FreeParameter& paramete
   const auto second = is_lognormal ? plain_number(reading, distribution, word, 1, values[1])
                                    : value_in(reading, distribution, word, 1, parameter.key, values[1]);
   if (!first || !second) return;
+  if (!is_lognormal) distribution.expect_like_units({word});
   prior.first = *first;
   prior.second = *second;
   check_prior(reading, distribution, prior, parameter, values);

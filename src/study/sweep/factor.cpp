@@ -140,6 +140,8 @@ class LevelReader {
     if (!mean || !deviation) return;
     if (mean->is_in_radii != deviation->is_in_radii) {
       fault_at(section_.value_place("std"), "expected mean and std both in R0, or neither");
+    } else {
+      section_.expect_like_units({"mean", "std"});
     }
     if (!(deviation->number > 0.0)) fault_at(section_.value_place("std"), "expected std above 0");
     *factor_.distribution = {
@@ -164,6 +166,7 @@ class LevelReader {
       values[k] = *value;
       distribution.parameters[k] = value->number;
     }
+    if (!is_lognormal) section_.expect_like_units({key});
     distribution.is_in_radii = values[0].is_in_radii;
     const auto& [first, second, third] = distribution.parameters;
     if (is_lognormal) {
@@ -188,6 +191,8 @@ class LevelReader {
     if (*from == *to) fault_at(section_.value_place("to"), "from and to are equal; expected two values");
     if (from->is_in_radii != to->is_in_radii) {
       fault_at(section_.value_place("to"), "expected from and to both in R0, or neither");
+    } else {
+      section_.expect_like_units({"from", "to"});
     }
     if (factor_.range->is_logarithmic && !(from->number > 0.0 && to->number > 0.0)) {
       fault_at(section_.value_place("scale"), "a logarithmic range has no place for 0; expected from and to above 0");

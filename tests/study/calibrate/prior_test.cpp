@@ -178,7 +178,8 @@ TEST_F(LinearCalibration, SaysWhereDataAndPriorContradictEachOther) {
 TEST_F(LinearCalibration, SaysThatANarrowPriorContradictsTheData) {
   // The fit lies a tenth of the prior's deviation from its centre, and the data tell 70 GPa to about 0.5 %.
   const auto notes_with = [this](const char* mean) {
-    const std::string prior = fmt::format("[prior]\n\"material.youngs_modulus\" = {{ normal = [\"{}\", 1e6] }}", mean);
+    const std::string prior =
+        fmt::format("[prior]\n\"material.youngs_modulus\" = {{ normal = [\"{}\", \"1 MPa\"] }}", mean);
     return calibrate(read("noise = { absolute = \"5 N\", relative = 0.02 }", prior)).notes;
   };
   const auto contradicts = [](const std::string& note) { return note.find("contradict") != std::string::npos; };
