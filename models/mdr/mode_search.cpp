@@ -131,6 +131,17 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
   return end;
 }
 
+bool ModeSearch::let_go_of_pulling_walls(double xi, std::span<double> y, std::vector<Event>& log) {
+  p_.evaluated(xi, y);
+  bool any = false;
+  for (std::size_t i = 0; i < p_.size(); ++i) {
+    if (!p_.is_loaded(i) || !p_.branch(i).touches() || !(p_.drive(i).value(xi) < 0.0)) continue;
+    separate(i, y, log);
+    any = true;
+  }
+  return any;
+}
+
 /// True for a guard that has fired without a transition to apply: another transition at this instant has made it void,
 /// or round-off has fired it.
 bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {

@@ -67,6 +67,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     now_.particle.set_branch(i, branch);
   }
   now_.has_begun = true;
+  stick_under_force(y, log);
   y[k_work] -= now_.particle.force_work(y);
   if (now_.particle.centre().is_free()) now_.particle.evaluate(0.0, y);
   decide_mode(y, [&] {
@@ -83,16 +84,44 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (const auto end = reach_centre_at_once(0.0, y)) throw CannotBegin(*end);
 }
 
+/// Lets peeling edges stick whose walls are under a force that rises, or stand on the branch of small contact radii,
+/// which only displacement control can follow: a falling force then pulls that edge off. The displacement stays.
+void System::stick_under_force(std::span<const double> y, std::vector<Event>& log) {
+  Particle& p = now_.particle;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!p.is_loaded(i) || !p.branch(i).edge.peels()) continue;
+    const Instant& now = p.evaluate(0.0, y).contacts[i];
+    const Indenter indenter = p.branch(i).frame(p.law(), y[k_radius], now.overlap).indenter;
+    const double critical = p.branch(i).pull_off(p.law(), indenter).by_force.contact_radius;
+    const double rate = p.drive(i).rate();
+    if (!(rate > 0.0) && now.contact.contact_radius > critical) continue;
+    p.set_branch(i, p.branch(i).with_edge({Edge::sticking, now.contact.contact_radius}));
+    if (rate >= 0.0) log.push_back({"stick", static_cast<int>(i)});
+  }
+}
+
 std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double xi, std::span<double> y,
                                       std::vector<Event>& log) {
   fired_.clear();
   for (const std::size_t g : fired) fired_.push_back(now_.guards.list()[g]);
   const bool are_marks = std::ranges::all_of(fired_, &Guard::is_mark);
   std::optional<DomainEnd> end;
-  decide_mode(y, [&] {
-    end = search_.apply(fired_, xi, y, now_.caps, log);
-    if (!end && !are_marks) search_.resolve(xi, y, log);
-  });
+  const std::size_t logged = log.size();
+  try {
+    decide_mode(y, [&] {
+      end = search_.apply(fired_, xi, y, now_.caps, log);
+      if (!end && !are_marks) search_.resolve(xi, y, log);
+    });
+  } catch (const std::domain_error&) {
+    // If contacts give way under a tension that no others bear, the walls that pull let go, as from a fixed centre: the
+    // program has no place for a particle that leaves with a wall.
+    if (std::ranges::find(fired_, k_unstable, &Guard::kind) == fired_.end()) throw;
+    log.resize(logged);
+    decide_mode(y, [&] {
+      if (!search_.let_go_of_pulling_walls(xi, y, log)) throw;
+      search_.resolve(xi, y, log);
+    });
+  }
   if (end) return end;
   now_.guards.arm(now_.particle, now_.caps, xi, y);
   return are_marks ? std::nullopt : now_.caps.meet_at_once(now_.particle, log);

@@ -207,6 +207,31 @@ TEST_P(MdrPullOff, LeavesAWallUnderForceWhereItIs) {
   EXPECT_EQ(result.at_event("pull-off", "axial.regime"), 0.0);  // open
 }
 
+TEST_P(MdrPullOff, ComesWhereAFallingForceTakesOverFromDisplacementBeyondTheGreatestTension) {
+  const TestRun result = run(jkr({ramp(0.005), ramp(-0.00055), force_ramp(-4.5e-5)}), GetParam());
+  EXPECT_EQ(result.time_of("pull-off"), 2.0);
+  EXPECT_EQ(result.last("axial.force"), 0.0);
+}
+
+TEST_P(MdrPullOff, DoesNotComeWhereARisingForceTakesOver) {
+  const Step to_extremum = until_event(ramp(-0.01), "force-extremum");
+  for (const Step& withdrawal : {ramp(-0.00055), ramp(-0.0003), to_extremum}) {
+    const TestRun result = run(jkr({ramp(0.005), withdrawal, force_ramp(0.0)}), GetParam());
+    ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+    EXPECT_FALSE(result.has_event("pull-off"));
+    // The edge sticks: 2 E* a is the stiffness of a punch of its radius.
+    const auto times = result.column("time");
+    const double begin = times.back() - 1.0;
+    const auto corner = std::ranges::find_if(times, [&](double t) { return t > begin - 1e-9; }) - times.begin();
+    const auto places = result.column("axial.displacement");
+    const auto forces = result.column("axial.force");
+    const auto radii = result.column("axial.contact_radius");
+    EXPECT_LT(forces.at(corner), -3e-5);
+    EXPECT_NEAR(radii.back(), radii[corner], 1e-6 * radii[corner]);
+    EXPECT_NEAR(places.back() - places[corner], -forces[corner] / (2.0 * k_modulus * radii[corner]), 1e-12);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(AllForms, MdrPullOff, ::testing::ValuesIn(k_integrators), [](const auto& test) {
   std::string name = test.param;
   std::ranges::replace(name, '-', '_');

@@ -496,6 +496,31 @@ TEST_P(MdrFreeCentreUnderForce, IsPressedOnWhereBothWallsHaveLostIt) {
   }
 }
 
+TEST_P(MdrFreeCentreUnderForce, IsPulledOffAtTheTensionThatTheWeakerSideBears) {
+  const double surface_energy = 1e-5;
+  const double bears = 1.5 * pi * surface_energy;  // a contact (Johnson, Kendall and Roberts)
+  const double from = 1e-4;
+  const double to = -1e-4;
+  for (const double degrees : {0.0, 40.0, 70.0}) {
+    CheckedScenario scenario = against_a_fixed_wall({force_ramp(from), force_ramp(to)});
+    scenario.material["surface_energy"] = surface_energy;
+    scenario = with(std::move(scenario), "elastic_profile", "parabola");
+    const double tilt = degrees * pi / 180.0;
+    if (degrees > 0.0) {
+      scenario.loading.walls[1] = wall("a", {std::sin(tilt), 0.0, -std::cos(tilt)});
+      scenario.loading.walls.push_back(wall("b", {-std::sin(tilt), 0.0, -std::cos(tilt)}));
+    }
+    const TestRun result = run(scenario, GetParam());
+    ASSERT_EQ(result.record.status, RunStatus::complete) << degrees << ": " << result.record.message;
+    const double tension = bears * (degrees > 0.0 ? std::min(1.0, 2.0 * std::cos(tilt)) : 1.0);
+    EXPECT_NEAR(result.time_of("pull-off"), 1.0 + (from + tension) / (from - to), 1e-6) << degrees;
+    EXPECT_EQ(result.last("z+.force"), 0.0) << degrees;
+    // The particle stays at the walls that do not pull.
+    EXPECT_NEAR(result.last(degrees > 0.0 ? "a.force" : "z-.force"), 0.0, 1e-12) << degrees;
+    EXPECT_GT(result.last(degrees > 0.0 ? "a.contact_radius" : "z-.contact_radius"), 0.0) << degrees;
+  }
+}
+
 TEST_P(MdrFreeCentreUnderForce, IsRefusedWhereNothingHoldsItAgainstAForce) {
   // Both walls have gone away, and the particle's position between them is undetermined.
   CheckedScenario scenario = against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)});
