@@ -1,6 +1,7 @@
 #include "study/identify/identify.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -41,16 +42,12 @@ class Instants {
   }
 
   /// True if the instant of a row depends on no free number; false where a derivative is undefined.
-  [[nodiscard]] bool is_fixed(std::size_t row) const { return !mover(row, true); }
-
-  /// The first free number that the instant of a row depends on.
-  /// @param counts_undefined  whether an undefined derivative counts as a dependence
-  [[nodiscard]] std::optional<std::size_t> mover(std::size_t row, bool counts_undefined = false) const {
+  [[nodiscard]] bool is_fixed(std::size_t row) const {
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const double change = history_.at(row, columns_[k]) * plan_.values[k];
-      if (std::isnan(change) ? counts_undefined : std::abs(change) > k_fixed_instant * duration_) return k;
+      if (!(std::abs(change) <= k_fixed_instant * duration_)) return false;
     }
-    return {};
+    return true;
   }
 
  private:
@@ -60,20 +57,108 @@ class Instants {
   double duration_ = 0.0;
 };
 
-/// Notes the first step, other than the last one, whose end depends on a free number.
-void note_moving_ends(const ExperimentPlan& plan, const Table& history, const Instants& instants,
-                      std::vector<std::string>& notes) {
-  const std::size_t step = *history.find("step");
-  for (std::size_t row = 0; row + 1 < history.row_count(); ++row) {
-    if (history.at(row, step) == history.at(row + 1, step)) continue;
-    const auto mover = instants.mover(row);
-    if (!mover) continue;
-    notes.push_back(
-        fmt::format("the instant at which step {:.0f} ends depends on '{}', and is taken as measured, too; for errors "
-                    "of a fit along a measured displacement, prescribe displacements",
-                    history.at(row, step), plan.free[*mover].key.path));
-    return;
+/// Program that goes through the displacements of a run: forces, and steps that a condition ends, are replaced by the
+/// displacements to which they led. A fit goes along the measured displacement, too; at fixed forces the place of the
+/// wall would depend on what is sought.
+class DisplacementProgram {
+ public:
+  /// @param history  of a run of the scenario
+  DisplacementProgram(const CheckedScenario& scenario, const Table& history) : history_(history) {
+    find_ends();
+    const std::vector<Step>& shared = scenario.loading.steps;
+    const std::vector<WallSpec>& walls = scenario.loading.walls;
+    is_replaced_.resize(ends_.size());
+    const auto mark = [this](const std::vector<Step>& steps) {
+      for (std::size_t k = 0; k < std::min(steps.size(), ends_.size()); ++k) {
+        const bool asks = steps[k].kind == Step::Kind::force || !steps[k].until.empty();
+        if (asks && duration_of(k) > 0.0) is_replaced_[k] = true;
+      }
+    };
+    mark(shared);
+    for (const WallSpec& wall : walls) mark(wall.steps);
+    if (walls.empty()) add("loading.steps", "axial", shared);
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+      if (walls[i].is_fixed) continue;
+      add(fmt::format("loading.wall[{}].steps", i), walls[i].name, walls[i].steps.empty() ? shared : walls[i].steps);
+    }
   }
+
+  /// Numbers of the replaced steps, from 1; empty if there are none, or a wall has no column of its displacement.
+  [[nodiscard]] std::vector<std::size_t> replaced() const {
+    std::vector<std::size_t> numbers;
+    for (std::size_t k = 0; k < is_replaced_.size() && has_columns_; ++k) {
+      if (is_replaced_[k]) numbers.push_back(k + 1);
+    }
+    return numbers;
+  }
+  /// Overrides of the scenario that make the program.
+  [[nodiscard]] const std::vector<std::string>& overrides() const noexcept { return overrides_; }
+
+ private:
+  /// Finds the last row of each step.
+  void find_ends() {
+    const std::size_t step = *history_.find("step");
+    for (std::size_t row = 0; row < history_.row_count(); ++row) {
+      const auto number = static_cast<std::size_t>(history_.at(row, step));
+      if (number > ends_.size()) ends_.resize(number, row);
+      if (number > 0) ends_[number - 1] = row;
+    }
+  }
+
+  [[nodiscard]] double duration_of(std::size_t step) const {
+    const std::size_t time = *history_.find("time");
+    return history_.at(ends_[step], time) - (step > 0 ? history_.at(ends_[step - 1], time) : 0.0);
+  }
+
+  void add(const std::string& key, const std::string& contact_class, const std::vector<Step>& steps) {
+    const auto column = history_.find(contact_class + ".displacement");
+    if (!column) {
+      has_columns_ = false;
+      return;
+    }
+    std::vector<std::string> texts;
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      const bool is_replaced = k < is_replaced_.size() && is_replaced_[k];
+      texts.push_back(
+          is_replaced && control_of(steps[k].kind)
+              ? fmt::format("{{ displacement = {}, duration = {} }}", history_.at(ends_[k], *column), duration_of(k))
+              : text_of(steps[k], is_replaced ? std::optional(duration_of(k)) : steps[k].duration));
+    }
+    overrides_.push_back(fmt::format("{} = [{}]", key, fmt::join(texts, ", ")));
+  }
+
+  static std::string text_of(const Step& step, std::optional<double> duration) {
+    std::string text;
+    switch (step.kind) {
+      case Step::Kind::displacement:
+        text = fmt::format("displacement = {}", step.target);
+        break;
+      case Step::Kind::force:
+        text = fmt::format("force = {}", step.target);
+        break;
+      case Step::Kind::detach:
+        text = "detach = true";
+        break;
+      default:
+        text = "hold = true";
+    }
+    if (duration) text += fmt::format(", duration = {}", *duration);
+    if (step.rate && !duration) text += fmt::format(", rate = {}", *step.rate);
+    return "{ " + text + " }";
+  }
+
+  const Table& history_;
+  std::vector<std::size_t> ends_;  ///< last row of each step
+  std::vector<bool> is_replaced_;
+  std::vector<std::string> overrides_;
+  bool has_columns_ = true;
+};
+
+bool prescribes(const CheckedScenario& scenario, Step::Kind kind) {
+  const auto has_kind = [kind](const std::vector<Step>& steps) {
+    return std::ranges::find(steps, kind, &Step::kind) != steps.end();
+  };
+  return has_kind(scenario.loading.steps) || std::ranges::any_of(scenario.loading.walls, has_kind, &WallSpec::steps);
 }
 
 Eigen::MatrixXd stacked(const std::vector<FreeParameter>& free, std::span<const double> values,
@@ -117,13 +202,29 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
   }
   const double duration = rough.row_count() > 0 ? rough.at(rough.row_count() - 1, *rough.find("time")) : 0.0;
 
+  const bool is_displacement = program.observable.ends_with(".displacement");
+  if (is_displacement && prescribes(scenario, Step::Kind::displacement)) {
+    information.notes.push_back(
+        fmt::format("a step prescribes the measured quantity, {}, and tells nothing; expected forces in the program, "
+                    "or y = a force",
+                    program.observable));
+  }
+  if (!is_displacement) {
+    const DisplacementProgram path(program.scenario, rough);
+    if (const std::vector<std::size_t> replaced = path.replaced(); !replaced.empty()) {
+      scenario = program.scenario.variants->with(path.overrides());
+      information.notes.push_back(fmt::format(
+          "step{} {} count{} as displacements, to where the force or condition leads: a fit follows the measured "
+          "displacement",
+          replaced.size() > 1 ? "s" : "", fmt::join(replaced, ", "), replaced.size() > 1 ? "" : "s"));
+    }
+  }
   scenario.sensitivities = program.scenario.sensitivities;
   scenario.output = {.points = 0, .times = measured_instants(duration, program.points)};
   const Run run = run_scenario(scenario);
   information.noise = run.integrator.is_direct() ? k_direct_error : k_integrated_error;
   const Table& history = run.record.history;
   const Instants instants(plan, history);
-  note_moving_ends(plan, history, instants, information.notes);
   const std::size_t time = *history.find("time");
   const std::size_t side = *history.find("row");
   const std::size_t y = *history.find(program.observable);
