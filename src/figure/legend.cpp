@@ -31,6 +31,7 @@ constexpr std::array k_points{6, 4, 8, 10, 12, 14, 2, 1, 3, 7, 5, 9, 11, 13, 15}
 constexpr double k_character_cm = 0.19;
 constexpr double k_sample_cm = 1.6;
 constexpr double k_heading_cm = 1.7;
+constexpr std::size_t k_longest_name = 56;  ///< of a run, in characters: a line of the legend
 
 /// A colour mixed with a share of grey.
 /// @param grey  0 for black, 255 for white
@@ -70,7 +71,8 @@ constexpr double k_heading_cm = 1.7;
 [[nodiscard]] LegendRow run_row(const std::vector<RunCurves>& runs, const Palette& palette) {
   LegendRow row{"Run", {}};
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    row.entries.push_back({verbatim_text(runs[k].name), phase_line(palette.particle_line(k), Phase::loading)});
+    row.entries.push_back(
+        {short_text(runs[k].name, k_longest_name), phase_line(palette.particle_line(k), Phase::loading)});
   }
   return row;
 }

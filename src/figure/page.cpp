@@ -6,6 +6,7 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -106,11 +107,16 @@ void make_folder(const fs::path& folder) {
                      power == 0 ? fmt::format("{:.6g}", tic_step) : tics_over_power(axis.range, power));
 }
 
+/// Power of ten of an axis's numbers, as a text; empty if they have none.
+[[nodiscard]] std::string power_of(const Axis& axis) {
+  const int power = axis.is_logarithmic || !axis.names.empty() ? 0 : shared_power(axis.range);
+  return power == 0 ? std::string() : fmt::format("10^{{{}}}", power);
+}
+
 /// Text at the end of an axis that gives the power of ten of its numbers.
-[[nodiscard]] std::string power_text(int label, const Axis& axis, const std::string& place) {
-  const int power = axis.is_logarithmic ? 0 : shared_power(axis.range);
-  if (power == 0) return fmt::format("unset label {}\n", label);
-  return fmt::format("set label {} {} at {} right\n", label, label_string(fmt::format("×10^{{{}}}", power)), place);
+[[nodiscard]] std::string power_text(int label, const std::string& power, const std::string& place) {
+  if (power.empty()) return fmt::format("unset label {}\n", label);
+  return fmt::format("set label {} {} at {} right\n", label, label_string("×" + power), place);
 }
 
 }  // namespace
@@ -138,6 +144,14 @@ std::string page_head(Format format, const Layout& layout, const std::string& fi
 std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, const Axis& y) {
   const Panel& panel = layout.panels[place];
   const Box& axes = panel.axes;
+  // Below an axis the power would meet the label; it joins the unit there.
+  std::string x_label = x.label;
+  std::string x_power = power_of(x);
+  if (const std::size_t unit = x_label.rfind(" [");
+      !x_power.empty() && unit != std::string::npos && x_label.ends_with(']')) {
+    x_label.insert(unit + 2, x_power + " ");
+    x_power.clear();
+  }
   const std::string letter =
       layout.panels.size() > 1 ? fmt::format("({})", static_cast<char>('a' + place % 26)) : std::string();
   return fmt::format(
@@ -149,10 +163,10 @@ std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, c
       "set label 2 {} at screen {:.4f}, {:.4f} center rotate by 90\n"
       "{}{}",
       axes.left / layout.width, axes.right() / layout.width, axes.bottom / layout.height, axes.top() / layout.height,
-      axis_text('x', x), axis_text('y', y), label_string(x.label), letter, label_string(y.label),
+      axis_text('x', x), axis_text('y', y), label_string(x_label), letter, label_string(y.label),
       panel.y_label_left / layout.width, (axes.bottom + 0.5 * axes.height) / layout.height,
-      power_text(3, x, fmt::format("graph 1, screen {:.4f}", (axes.bottom - k_x_label_cm) / layout.height)),
-      power_text(4, y, "graph -0.01, 1.06"));
+      power_text(3, x_power, fmt::format("graph 1, screen {:.4f}", (axes.bottom - k_x_label_cm) / layout.height)),
+      power_text(4, power_of(y), "graph -0.01, 1.06"));
 }
 
 std::string label_string(std::string_view enhanced) {
@@ -181,9 +195,17 @@ std::string verbatim_text(std::string_view name) {
   return text;
 }
 
-std::string short_text(const std::string& name) {
-  constexpr std::size_t k_room = 28;
-  return verbatim_text(name.size() <= k_room ? name : name.substr(0, k_room - 3) + "...");
+std::string short_text(const std::string& name, std::size_t room) {
+  constexpr std::string_view k_gap = "...";
+  // Positions of the characters of UTF-8.
+  std::vector<std::size_t> begins;
+  for (std::size_t k = 0; k < name.size(); ++k) {
+    if ((static_cast<unsigned char>(name[k]) & 0xC0U) != 0x80U) begins.push_back(k);
+  }
+  if (begins.size() <= room) return verbatim_text(name);
+  const std::size_t head = (room - k_gap.size() + 1) / 2;
+  const std::size_t tail = room - k_gap.size() - head;
+  return verbatim_text(name.substr(0, begins[head]) + std::string(k_gap) + name.substr(begins[begins.size() - tail]));
 }
 
 void write_whole(const fs::path& file, const std::string& text) {
@@ -200,6 +222,11 @@ FigureFiles::FigureFiles(fs::path output)
       data_(fs::path(figure_).replace_extension(".dat")),
       format_(format_of(figure_)) {
   gnuplot_ = find_gnuplot();
+  try {
+    for (const fs::path& file : {script_, data_}) expect_own_file(file, script_);
+  } catch (const std::runtime_error& error) {
+    throw FigureError(error.what());
+  }
 }
 
 void FigureFiles::write(const std::string& data, const std::string& script) const {

@@ -36,8 +36,9 @@ struct Axis {
 /// A name as gnuplot's enhanced text, with all its characters shown as they are.
 [[nodiscard]] std::string verbatim_text(std::string_view name);
 
-/// A name as gnuplot's enhanced text, cut to the room that a panel or a legend has.
-[[nodiscard]] std::string short_text(const std::string& name);
+/// A name as gnuplot's enhanced text. A long one loses its middle, because names often differ at their ends.
+/// @param room  characters, by default as many as a panel's note has room for
+[[nodiscard]] std::string short_text(const std::string& name, std::size_t room = 28);
 
 /// Last part of a script.
 inline constexpr const char* k_page_foot = "unset multiplot\nunset output\n";
@@ -49,7 +50,8 @@ void write_whole(const std::filesystem::path& file, const std::string& text);
 class FigureFiles {
  public:
   /// @param output  the figure; its extension picks the format
-  /// @throws FigureError if the format is unknown or gnuplot is missing; no file has been written then
+  /// @throws FigureError if the format is unknown, gnuplot is missing, or a file of the user stands beside the figure;
+  ///                     no file has been written then
   explicit FigureFiles(std::filesystem::path output);
 
   [[nodiscard]] Format format() const noexcept { return format_; }

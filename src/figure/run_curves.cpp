@@ -181,6 +181,10 @@ RunCurves read_run(const fs::path& run) {
   const fs::path file = fs::is_directory(run, ignored) ? run / "history.csv" : run;
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   const Table history = read_table(file);
+  if (!history.find("time")) {
+    throw FigureError(
+        fmt::format("{}: has no column 'time'; expected the folder or the history.csv of a run", file.string()));
+  }
   const auto classes = contact_classes(history);
   if (classes.empty()) {
     throw FigureError(fmt::format("{}: no contacts to draw (no column ending in '{}')", file.string(), k_displacement));

@@ -254,6 +254,15 @@ TEST(Chart, KeepsItsNoteBesideThePowerOfTenOfItsAbscissa) {
   EXPECT_NE(script.find("'×10^{−7}'"), std::string::npos) << script;
 }
 
+TEST(Chart, PutsThePowerOfTenOfItsAbscissaBesideTheUnit) {
+  Chart chart = chart_of({series("a")});
+  chart.panels[0].x.label = "Displacement [m]";
+  chart.panels[0].series[0].x = {0.0, 1e-7, 0.5e-7};
+  const std::string script = script_of(chart);
+  EXPECT_NE(script.find("Displacement [10^{−7} m]"), std::string::npos) << script;
+  EXPECT_EQ(script.find("×10"), std::string::npos) << script;
+}
+
 TEST(Label, HasMinusSignsAndKeepsItsHyphens) {
   EXPECT_EQ(label_string("a - b"), "'a − b'");
   EXPECT_EQ(label_string("-1"), "'−1'");

@@ -180,7 +180,9 @@ TEST_F(Figure, OverlaysRunsUnderNamesThatDiffer) {
   EXPECT_EQ(fault_of({run(), in_folder("other/it's_a_run/history.csv")}, in_folder("both.svg")), "no fault");
   const std::string script = read_text(in_folder("both.gp"));
   EXPECT_NE(script.find(R"(runs/it's\134_a\134_run")"), std::string::npos) << script;
-  EXPECT_NE(script.find(R"(other/it's\134_a\134_run/history.csv")"), std::string::npos) << script;
+  // A long name keeps both ends.
+  EXPECT_NE(script.find(R"(...)"), std::string::npos) << script;
+  EXPECT_NE(script.find(R"(it's\134_a\134_run/history.csv")"), std::string::npos) << script;
 }
 
 TEST_F(Figure, StaysInUnitsWhereARunHasNoScales) {
