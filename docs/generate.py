@@ -525,7 +525,7 @@ def wrapped(text):
     """A help text with lines that fit on a page; what a line says goes on where it began."""
     lines = []
     for line in text.splitlines():
-        column = re.match(r"(  \S.*?\s{2,})?", line).end()
+        column = re.match(r"( +\S.*?\s{2,})?", line).end()
         lines += textwrap.wrap(line, 92, subsequent_indent=" " * column, break_on_hyphens=False) or [""]
     return "\n".join(lines) + "\n"
 

@@ -147,7 +147,8 @@ std::optional<DomainEnd> GuardSet::limit_met(const Particle& p, const Motion& mo
 
 DomainEnd end_at(const Guard& guard, const Particle& p, double xi) {
   const Event event{guard.name};
-  if (guard.kind == k_coverage) return {event, {Limit::surface_covered, -1, "coverage", p.coverage().Om}};
+  if (guard.kind == k_coverage)
+    return {event, {Limit::surface_covered, -1, "share of the surface", 0.5 * p.coverage().Om}};
   if (guard.kind == k_away) return {event, {.limit = Limit::centre_driven_away}};
   double largest = 0.0;
   for (const ClassState& c : p.classes) largest = std::max(largest, c.position(xi));

@@ -13,6 +13,7 @@
 #include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
 #include "scenario/integrators.hpp"
+#include "scenario/text_file.hpp"
 #include "study/atlas/atlas.hpp"
 #include "verify/bench/bench.hpp"
 
@@ -74,12 +75,12 @@ void check_integrators(const std::vector<std::string>& names) {
 
 constexpr const char* k_list = "scenarios/bench/scenes.toml";
 
-/// Fills in options that were not given: the data that come with the program; for the result the folder plots, if it
-/// exists, else bench.
+/// Fills in options that were not given: the data that come with the program; for the result the folder plots of a
+/// checkout, elsewhere bench.
 BenchOptions with_defaults(BenchOptions options) {
   if (options.list.empty()) options.list = find_data({k_list}).path(k_list).string();
   if (options.definitions.empty()) options.definitions = find_data({"plots"}).path("plots").string();
-  if (options.output.empty()) options.output = fs::is_directory("plots") ? "plots" : "bench";
+  if (options.output.empty()) options.output = fs::exists(k_list) ? "plots" : "bench";
   return options;
 }
 
@@ -100,6 +101,8 @@ int bench(const BenchOptions& named) {
   const BenchList list = needs_list ? read_bench_list(options.list) : BenchList{};
   const std::vector<CheckedScenario> scenarios = chosen_scenes(options, list.scenes);
   prepare_folder(options.output);
+  const fs::path output = options.output;
+  for (const char* name : {"bench.csv", "bench.md"}) expect_own_file(output / name, output / "bench.csv");
   std::vector<BenchScene> scenes;
   std::vector<BenchProfile> profiles;
   {
@@ -142,7 +145,7 @@ void add_bench_command(CLI::App& app, Action& action) {
       ->check(CLI::ExistingFile)
       ->excludes("--against-fe");
   command->add_option("-o,--output", options->output,
-                      "Folder of table, CSV and figures [plots, where that is there, or bench]");
+                      "Folder of table, CSV and figures [plots in a checkout, else bench]");
   command->footer("Example: monograin bench mdr-die-50 --integrator auto cvode-bdf -o bench");
   command->callback([options, &action] { action = [options] { return bench(*options); }; });
 }

@@ -23,11 +23,21 @@ constexpr const char* k_installed = MONOGRAIN_DATA_FROM_PROGRAM;
 /// File beside a program in a build tree that contains the path of the checkout.
 constexpr const char* k_checkout_file = "monograin-data";
 
+/// True for a file, and for a folder with a file of the program's kinds: a folder of a user may be called plots, too.
+/// What cannot be read counts as missing.
+bool is_there(const fs::path& part) {
+  std::error_code error;
+  if (!fs::is_directory(part, error)) return fs::exists(part, error);
+  const fs::directory_iterator files(part, error);
+  return !error && std::any_of(begin(files), end(files), [](const fs::directory_entry& entry) {
+    return entry.path().extension() == ".toml" || entry.path().extension() == ".csv";
+  });
+}
+
 /// The first part that a folder does not have; empty if it has all.
 std::string_view missing_part(const DataFolder& folder, std::initializer_list<std::string_view> parts) {
-  std::error_code ignored;  // a part whose status is not available counts as missing
   const auto found =
-      std::ranges::find_if(parts, [&](std::string_view part) { return !fs::exists(folder.path(part), ignored); });
+      std::ranges::find_if_not(parts, [&](std::string_view part) { return is_there(folder.path(part)); });
   return found == parts.end() ? std::string_view{} : *found;
 }
 

@@ -7,7 +7,9 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <span>
 #include <sstream>
+#include <string_view>
 
 #include "cli/commands.hpp"
 #include "cli/terminal.hpp"
@@ -61,9 +63,33 @@ std::string names_of(const std::vector<const CLI::App*>& commands) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Value of an option as it was typed; the parser may have changed its own copy.
+std::string value_on_line(const CLI::Option& option, std::span<char* const> words) {
+  std::string value = fmt::format("{}", fmt::join(option.results(), " "));
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const std::string_view word = words[k];
+    const std::size_t equals = word.find('=');
+    const std::string_view name = word.substr(0, equals);
+    if (!name.starts_with('-') || !option.check_name(std::string(name))) continue;
+    if (equals != std::string_view::npos)
+      value = word.substr(equals + 1);
+    else if (k + 1 < words.size())
+      value = words[k + 1];
+  }
+  return value;
+}
+
 /// Message that names the option at fault and what it expects; empty if no option is at fault.
-std::string fault_of_option(const CLI::ParseError& error, const CLI::App& command) {
+std::string fault_of_option(const CLI::ParseError& error, const CLI::App& command, std::span<char* const> words) {
   const std::string text = error.what();
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+      if (option->count() > 0 && text.find(option->get_name()) != std::string::npos)
+        names.push_back(option->get_name());
+    }
+    return fmt::format("{} exclude each other; expected one of them", fmt::join(names, " and "));
+  }
   for (const CLI::Option* option : command.get_options()) {
     const std::string name = option->get_name();
     if (option->get_required() && option->count() == 0 && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
@@ -78,14 +104,16 @@ std::string fault_of_option(const CLI::ParseError& error, const CLI::App& comman
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && option->count() <= 1) {
       return fmt::format("{} needs a value; expected: {}", name, option->get_description());
     }
-    return fmt::format("{} = {} is not what it takes; expected: {}", name,
-                       shown(fmt::format("{}", fmt::join(option->results(), " "))), option->get_description());
+    const std::string value = shown(value_on_line(*option, words));
+    if (text.find("does not exist") != std::string::npos)
+      return fmt::format("{} = {}: there is no such file", name, value);
+    return fmt::format("{} = {} is not what it takes; expected: {}", name, value, option->get_description());
   }
   return {};
 }
 
 /// Message on a fault of the command line, in the program's own words.
-std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app) {
+std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app, std::span<char* const> words) {
   const std::vector<CLI::App*> named = app.get_subcommands();
   if (named.empty()) {
     return fmt::format("a command is missing; there are {}. 'monograin --help' says what they do",
@@ -102,10 +130,12 @@ std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     }
     const std::vector<std::string_view> known(names.begin(), names.end());
-    fault =
-        fmt::format("'{}' is not expected here{}", shown(first), did_you_mean(first.substr(0, first.find('=')), known));
+    const std::string name = first.substr(0, first.find('='));
+    const bool is_too_early = std::ranges::find(names, name) != names.end();
+    fault = fmt::format("'{}' is not expected here{}", shown(first),
+                        is_too_early ? "; expected it after the command" : did_you_mean(name, known));
   } else {
-    fault = fault_of_option(error, command);
+    fault = fault_of_option(error, command, words);
   }
   if (fault.empty()) fault = "the arguments do not go together";
   return fmt::format("{}: {}. 'monograin {} --help' says more", command.get_name(), fault, command.get_name());
@@ -171,7 +201,7 @@ int run_program(int argc, char** argv) {
     print_data("{}", text.str());
     return k_success;
   } catch (const CLI::ParseError& error) {
-    say("monograin: {}\n", fault_of_line(error, app));
+    say("monograin: {}\n", fault_of_line(error, app, {argv, static_cast<std::size_t>(argc)}));
     return k_usage;
   }
   return run_action(action);

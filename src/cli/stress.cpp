@@ -81,9 +81,12 @@ void add_stress_command(CLI::App& app, Action& action) {
       ->type_name("TIME");
   command->add_option("--model", options->models, "Draw scenes of these models only, a sequence of their own [all]")
       ->type_name("NAME");
-  command->add_option("--seed", options->seed, "Which sequence of scenes [1]");
-  command->add_option("-n,--scenes", options->scenes, "End after so many scenes [none: when the time is up]");
-  command->add_option("--first", options->first, "Index of the scene to begin with [0]");
+  command->add_option("--seed", options->seed, "Which sequence of scenes, a number from 0 [1]")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("-n,--scenes", options->scenes, "End after so many scenes [none: when the time is up]")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--first", options->first, "Index of the scene to begin with, from 0 [0]")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
       ->check(CLI::Range(1, 1024));
   command->add_option("-o,--output", options->output, "Folder of the report and the failing scenes [runs/stress]");

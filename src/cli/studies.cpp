@@ -53,6 +53,10 @@ int plot(const PlotOptions& options) {
   std::vector<fs::path> runs(options.runs.begin(), options.runs.end());
   for (const fs::path& run : runs) {
     if (!fs::exists(run)) throw UsageError(fmt::format("{}: no such run", run.string()));
+    if (run.extension() == ".toml") {
+      throw UsageError(
+          fmt::format("{}: expected the folder of a run; 'monograin run --plot' draws a scenario", run.string()));
+    }
   }
   if (options.profile) return plot_profile(options);
   const fs::path first = fs::is_directory(runs.front()) ? runs.front() : runs.front().parent_path();
@@ -134,6 +138,7 @@ Comparison compare_files(const CompareOptions& options) {
 }
 
 int compare(const CompareOptions& options) {
+  if (options.reference == "-" && options.other == "-") throw UsageError("standard input, -, can be read once only");
   const Comparison comparison = [&] {
     try {
       return compare_files(options);
@@ -152,6 +157,8 @@ int compare(const CompareOptions& options) {
     is_above = is_above || !(d.linf <= options.tolerance.value_or(k_infinity));
   }
   for (const Gap& gap : comparison.gaps) print_data("{}: {} {}\n", options.other, gap.column, gap.problem);
+  if (!options.y.empty() && comparison.curves.empty() && comparison.gaps.empty())
+    print_data("{}: the same words\n", options.y);
   if (!options.tolerance) {
     if (comparison.curves.empty() && !comparison.gaps.empty()) throw UsageError("no column could be compared");
     return k_success;

@@ -45,6 +45,7 @@ SweepShard parse_shard(const std::string& text) {
 /// @throws std::runtime_error if the file cannot be written
 int make_design(const Sweep& sweep, const fs::path& folder) {
   const fs::path file = folder / "design.csv";
+  expect_own_file(file, file);
   fs::create_directories(folder);
   write_text_file(file, design_text(sweep));
   if (sweep.points.size() > 0 && sweep.results.empty()) {

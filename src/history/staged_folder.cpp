@@ -26,7 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view k_list = ".monograin";
 constexpr std::string_view k_list_head =
     "# Files that monograin has written here, with their digests. A later result replaces or removes them.\n";
 /// Empty file that marks a hidden folder whose files are being moved to the target.
@@ -114,8 +113,8 @@ using FileList = std::map<std::string, std::string>;  ///< digests by name
 /// Reads the list of written files in a folder. Lines whose name is not that of a file directly in it are ignored.
 [[nodiscard]] FileList read_list(const fs::path& folder) {
   FileList list;
-  if (!is_regular(folder / k_list)) return list;
-  const std::string text = read_text_file(folder / k_list, k_largest_file).text;
+  if (!is_regular(folder / k_written_files)) return list;
+  const std::string text = read_text_file(folder / k_written_files, k_largest_file).text;
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
@@ -136,7 +135,7 @@ void write_list(const fs::path& folder) {
     list.emplace(entry.path().filename().string(), digest_of(entry.path()));
   }
   for (const auto& [name, digest] : list) text += fmt::format("{} {}\n", digest, name);
-  write_text_file(folder / k_list, text);
+  write_text_file(folder / k_written_files, text);
 }
 
 // --- whose folder it is
@@ -182,7 +181,7 @@ void check_target(const fs::path& target, const std::string& marker) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(staged)) {
     const std::string name = entry.path().filename().string();
-    if (name != k_list && name != k_moving) names.push_back(name);
+    if (name != k_written_files && name != k_moving) names.push_back(name);
   }
   std::ranges::sort(names, {}, [&](const std::string& name) { return std::pair(name == marker, name); });
   return names;
@@ -203,7 +202,7 @@ void move_files(const fs::path& staged, const fs::path& target, const std::strin
   const SignalsHeld held;
   for (const std::string& name : stale_names(read_list(staged), target)) fs::remove(target / name);
   for (const std::string& name : names_in(staged, marker)) fs::rename(staged / name, target / name);
-  fs::rename(staged / k_list, target / k_list);
+  fs::rename(staged / k_written_files, target / k_written_files);
 }
 
 [[nodiscard]] bool is_within(const fs::path& path, const fs::path& folder) {
@@ -224,7 +223,7 @@ void move_files(const fs::path& staged, const fs::path& target, const std::strin
   std::vector<std::string> kept;
   for (const auto& entry : fs::directory_iterator(target)) {
     const std::string name = entry.path().filename().string();
-    if (name == k_list || list.contains(name) || std::ranges::find(stale, name) != stale.end()) continue;
+    if (name == k_written_files || list.contains(name) || std::ranges::find(stale, name) != stale.end()) continue;
     if (entry.symlink_status().type() == fs::file_type::directory) return false;
     kept.push_back(name);
   }
@@ -245,7 +244,8 @@ void rescue(const fs::path& old, const fs::path& target) {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(old, ignored)) {
     const std::string name = entry.path().filename().string();
-    if (name == k_list || list.contains(name) || fs::exists(fs::symlink_status(target / name, ignored))) continue;
+    if (name == k_written_files || list.contains(name) || fs::exists(fs::symlink_status(target / name, ignored)))
+      continue;
     fs::rename(entry.path(), target / name, ignored);
   }
 }
@@ -262,7 +262,7 @@ void clear_leftovers(const fs::path& folder, std::string_view prefix, const fs::
     const LockedFolder lock(leftover, LOCK_EX | LOCK_NB);
     if (!lock.is_held()) continue;
     // A hidden folder without list holds an incomplete result, or all its files have been moved.
-    if (fs::exists(target) && fs::exists(leftover / k_list, ignored)) {
+    if (fs::exists(target) && fs::exists(leftover / k_written_files, ignored)) {
       if (fs::exists(leftover / k_moving, ignored)) {
         move_files(leftover, target, marker);
       } else {
@@ -347,7 +347,7 @@ void StagedFolder::publish() {
     sync_to_disk(staged_ / name);
   }
   write_list(staged_);
-  sync_to_disk(staged_ / k_list);
+  sync_to_disk(staged_ / k_written_files);
   sync_to_disk(staged_);
   // An existing target is never renamed over, even if empty: a process that works in it would lose its folder.
   if (fs::exists(target_) || rename(staged_.c_str(), target_.c_str()) != 0) {

@@ -11,6 +11,9 @@ namespace monograin {
 /// File that marks the folder of a run.
 inline constexpr std::string_view k_run_marker = "run.json";
 
+/// Hidden list of the written files, in the folder of every result that is published.
+inline constexpr std::string_view k_written_files = ".monograin";
+
 /// A result that is written to a hidden folder and then published to its target folder.
 ///
 /// Files are written to path(), the hidden folder. publish() replaces files of the same name in the target and keeps

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "scenario/faults.hpp"
 #include "scenario/words.hpp"
@@ -164,6 +165,24 @@ toml::table parse_document(std::string_view text, const std::string& origin) {
   } catch (const toml::parse_error& error) {
     throw_fault(place_of(error.source(), {origin}), "not valid TOML: " + sentence_of(error.description()));
   }
+}
+
+void expect_kind(const toml::table& root, const std::string& origin, std::string_view own) {
+  struct Kind {
+    std::string_view key;
+    std::string_view noun;
+    std::string_view command;
+  };
+  constexpr std::array<Kind, 4> k_kinds{{{"model", "a scenario", "run"},
+                                         {"vary", "a sweep", "sweep"},
+                                         {"program", "a plan of experiments", "design"},
+                                         {"data", "a calibration", "calibrate"}}};
+  if (root.contains(own)) return;
+  const auto found = std::ranges::find_if(k_kinds, [&](const Kind& kind) { return root.contains(kind.key); });
+  if (found == k_kinds.end()) return;
+  const auto* expected = std::ranges::find(k_kinds, own, &Kind::key);
+  throw_fault({origin},
+              fmt::format("this is {}, for 'monograin {}'; expected {}", found->noun, found->command, expected->noun));
 }
 
 SourceLocation place_of(const toml::source_region& region, const SourceLocation& fallback) {

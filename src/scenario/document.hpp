@@ -15,6 +15,11 @@ namespace monograin {
 /// @throws ScenarioError with one fault if the text is not TOML, is too large or nests too deeply
 [[nodiscard]] toml::table parse_document(std::string_view text, const std::string& origin);
 
+/// Refuses a file of another kind, which would cause a fault for each of its keys.
+/// @param own  key by which files of the expected kind are known: "model", "vary", "data", "program"
+/// @throws ScenarioError with one fault if the tree lacks that key and has that of another kind
+void expect_kind(const toml::table& root, const std::string& origin, std::string_view own);
+
 /// Position of a node or key; `fallback` if the tree does not have it.
 [[nodiscard]] SourceLocation place_of(const toml::source_region& region, const SourceLocation& fallback);
 

@@ -256,10 +256,11 @@ class LayoutFinder {
     });
   }
 
-  /// True for a row of texts that has a cell for each column.
+  /// True for a row of texts that has a cell for each column. Columns that are always empty may have one, too.
   [[nodiscard]] bool may_be_headings(std::size_t row) const {
-    return rows_[row].numbers == 0 && (rows_[row].filled > 1 || width_ == 1) &&
-           (width_ == 0 || headings_of(row).size() == width_);
+    if (rows_[row].numbers > 0 || !(rows_[row].filled > 1 || width_ == 1)) return false;
+    const std::size_t cells = headings_of(row).size();
+    return width_ == 0 || (cells >= width_ && cells <= std::max(width_, cell_count_));
   }
 
   /// Index of the row of headings. @param first  index of the first row of data

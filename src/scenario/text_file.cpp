@@ -87,6 +87,7 @@ FileText read_text_file(const fs::path& file, std::size_t largest, FileKind kind
   if (kind == FileKind::any && file == k_standard_input) return read_stream(std::cin, largest);
   std::error_code error;
   const auto status = fs::status(file, error);
+  if (status.type() == fs::file_type::none) return {{}, error.message()};
   if (!fs::exists(status)) return {{}, "there is no such file"};
   if (fs::is_directory(status)) return {{}, "this is a directory"};
   if (kind == FileKind::regular && !fs::is_regular_file(status)) return {{}, "this is a device or a pipe"};
@@ -109,6 +110,22 @@ void write_text_file(const fs::path& file, const std::function<void(const TextSi
     if (!partial.write(part)) fail(file, errno);
   });
   if (!partial.move_to(file)) fail(file, errno);
+}
+
+void expect_own_file(const fs::path& file, const fs::path& witness) {
+  // First words of the tables and gnuplot scripts that the program writes.
+  constexpr std::array<std::string_view, 5> k_own{"# program: monograin ",
+                                                  "# sweep: ", "# scenario: ", "# title: ", "# Draws '"};
+  constexpr std::size_t k_longest = 32;
+  std::error_code ignored;
+  const fs::file_type type = fs::symlink_status(file, ignored).type();
+  if (type == fs::file_type::not_found || type == fs::file_type::symlink) return;  // a link is replaced, not its target
+  const std::string text = read_text_file(witness, k_longest).text;
+  if (std::ranges::any_of(k_own, [&](std::string_view words) { return text.starts_with(words); })) return;
+  throw std::runtime_error(
+      fmt::format("{}: is none that monograin has written, and would be replaced; move it away, or choose "
+                  "another place with -o",
+                  file.string()));
 }
 
 std::vector<fs::path> scenario_files(const fs::path& folder) {

@@ -54,6 +54,12 @@ void write_text_file(const std::filesystem::path& file, std::string_view text);
 using TextSink = std::function<void(std::string_view part)>;
 void write_text_file(const std::filesystem::path& file, const std::function<void(const TextSink&)>& produce);
 
+/// Refuses to replace a file that the program has not written.
+/// @param witness  the file itself, or one that the program writes beside it: it tells whose the file is by its first
+///                 line
+/// @throws std::runtime_error if the file exists, and the witness is not the program's or does not exist
+void expect_own_file(const std::filesystem::path& file, const std::filesystem::path& witness);
+
 /// Scenario files (.toml) of a folder, in the order of their names.
 /// @throws std::runtime_error if there is no such folder, or no scenario file in it
 [[nodiscard]] std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder);

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "scenario/words.hpp"
 
@@ -22,8 +25,13 @@ constexpr std::array k_lengths{
     Unit{"m", 1.0},   Unit{"cm", 1e-2}, Unit{"mm", 1e-3}, Unit{"um", 1e-6},   Unit{"µm", 1e-6},
     Unit{"μm", 1e-6}, Unit{"nm", 1e-9}, Unit{"km", 1e3},  Unit{"in", 0.0254},
 };
-constexpr std::array k_stresses{Unit{"Pa", 1.0},  Unit{"kPa", 1e3},    Unit{"MPa", 1e6},
-                                Unit{"GPa", 1e9}, Unit{"N/mm^2", 1e6}, Unit{"psi", k_pound_force / (0.0254 * 0.0254)}};
+constexpr std::array k_stresses{Unit{"Pa", 1.0},
+                                Unit{"kPa", 1e3},
+                                Unit{"MPa", 1e6},
+                                Unit{"GPa", 1e9},
+                                Unit{"N/mm^2", 1e6},
+                                Unit{"N/mm²", 1e6},
+                                Unit{"psi", k_pound_force / (0.0254 * 0.0254)}};
 constexpr std::array k_surface_energies{
     Unit{"J/m^2", 1.0},  Unit{"J/m²", 1.0}, Unit{"mJ/m^2", 1e-3},
     Unit{"mJ/m²", 1e-3}, Unit{"N/m", 1.0},  Unit{"mN/m", 1e-3},
@@ -112,7 +120,14 @@ std::string unknown_unit(std::string_view symbol, const DimensionInfo& info) {
   if (symbol.empty()) return with_expectation("the unit is missing", info);
   if (symbol == info.relative) return with_expectation("the initial radius cannot be given in itself", info);
   if (symbol.starts_with(',')) return with_expectation("a decimal comma", info) + ", with a decimal point";
-  return with_expectation(fmt::format("unknown unit '{}'", shown(symbol)), info);
+  std::vector<std::string_view> known;
+  for (const Unit& unit : info.units) known.push_back(unit.symbol);
+  const auto lower = [](unsigned char c) { return std::tolower(c); };
+  const auto differs_in_case = std::ranges::find_if(
+      known, [&](std::string_view unit) { return std::ranges::equal(unit, symbol, {}, lower, lower); });
+  const std::string hint = differs_in_case != known.end() ? fmt::format("; did you mean '{}'?", *differs_in_case)
+                                                          : did_you_mean(symbol, known);
+  return with_expectation(fmt::format("unknown unit '{}'", shown(symbol)), info) + hint;
 }
 
 }  // namespace

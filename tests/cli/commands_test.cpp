@@ -655,7 +655,7 @@ TEST_F(Commands, DesignWritesNothingWhereSomethingIsAtFault) {
   write_text(path("small.toml"), k_small);
   write_text(path("plan.toml"), R"toml(scenario = "small.toml"
 [free]
-"material.youngs_modulus" = { from = 1, to = "1000 GPa" }
+"material.youngs_modulus" = { from = "1 Pa", to = "1000 GPa" }
 [[program]]
 name = "loading"
 noise = { absolute = "2 s" }

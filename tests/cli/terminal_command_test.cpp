@@ -98,6 +98,19 @@ TEST_F(Terminal, AFaultOfTheCommandLineIsNamedWithWhatIsExpected) {
   EXPECT_TRUE(contains(fault("compare a.csv"), "compare: B is missing; expected: What to hold against it"));
   EXPECT_TRUE(contains(fault("compare a.csv a.csv --tol x"), "--tol = x is not what it takes; expected: Exit with 5"));
   EXPECT_TRUE(contains(fault("compare a.csv a.csv --tol=-1"), "--tol = -1 is not what it takes"));
+  EXPECT_TRUE(contains(fault("stress --time bogus"), "--time = bogus is not what it takes"));
+  EXPECT_TRUE(contains(fault("stress --seed -1"), "--seed = -1 is not what it takes"));
+  EXPECT_TRUE(contains(fault("bench --redraw none.csv"), "--redraw = none.csv: there is no such file"));
+  EXPECT_TRUE(contains(fault("bench --redraw a.csv --against-fe"), "exclude each other"));
+  EXPECT_TRUE(contains(fault("--quiet run"), "'--quiet' is not expected here; expected it after the command"));
+  write_text(path("b.csv"), "run,end.axial.displacement[m],end.axial.force[N]\n1,0,0\n2,1,2\n");
+  EXPECT_TRUE(contains(fault("plot b.csv"), "b.csv: has no column 'time'"));
+  EXPECT_TRUE(contains(fault("plot small.toml"), "'monograin run --plot' draws a scenario"));
+  write_text(path("sweep.toml"),
+             "scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { values = [0.2, 0.3] }\n");
+  EXPECT_TRUE(contains(fault("run sweep.toml"), "this is a sweep, for 'monograin sweep'; expected a scenario"));
+  EXPECT_TRUE(
+      contains(fault("calibrate small.toml"), "this is a scenario, for 'monograin run'; expected a calibration"));
   EXPECT_TRUE(contains(fault("run --outptu=x"), "'--outptu=x' is not expected here; did you mean '--output'?"));
   EXPECT_TRUE(contains(fault("compare a.csv a.csv c.csv"), "'c.csv' is not expected here"));
   EXPECT_TRUE(contains(fault("run -o"), "--output needs a value; expected: Folder of the run"));

@@ -595,6 +595,36 @@ TEST_F(UserFiles, AFigureReplacesALinkInsteadOfWritingThroughIt) {
   EXPECT_FALSE(fs::is_symlink(path("run/figure.gp")));
 }
 
+TEST_F(UserFiles, AreNotReplacedByFilesThatNobodyNamed) {
+  ASSERT_EQ(monograin("run small.toml -o run").code, 0);
+  write_text(path("sweep.toml"),
+             "scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { values = [0.2, 0.3] }\n");
+  fs::create_directories(path("plots"));
+  write_text(path("plots/line.toml"),
+             "title = \"t\"\nsource = \"s\"\n[[panel]]\n"
+             "curve = [{ parameter = { from = 0, to = 1 }, x = \"t\", y = \"t\" }]\n");
+  const std::pair<const char*, const char*> cases[] = {{"plot run -o both.svg", "both.dat"},
+                                                       {"plot run -o two.svg", "two.gp"},
+                                                       {"plot run --profile 0.5 -o p.svg", "p.csv"},
+                                                       {"atlas line --plots plots -o plots", "plots/line.dat"},
+                                                       {"sweep sweep.toml --design-only -o s", "s/design.csv"},
+                                                       {"sweep sweep.toml -o s", "s/bands.csv"},
+                                                       {"bench small.toml --rtol 1e-3 -o b", "b/bench.md"}};
+  for (const auto& [command, file] : cases) {
+    fs::create_directories(path(file).parent_path());
+    write_text(path(file), "mine\n");
+    const Outcome outcome = monograin(command);
+    EXPECT_EQ(outcome.code, 2) << command;
+    EXPECT_NE(outcome.err.find(std::string(file) + ": is none that monograin has written"), std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(text(file), "mine\n") << command;
+    fs::remove(path(file));
+    EXPECT_EQ(monograin(command).code, 0) << command;
+    EXPECT_EQ(monograin(command).code, 0) << command << ", once more";
+  }
+  EXPECT_EQ(monograin("sweep sweep.toml -o run").code, 2) << "the folder of a run";
+}
+
 TEST_F(UserFiles, PipesAndDevicesAreOnlyReadWhereTheCommandLineNamesThem) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   for (const char* name : {"pipe", "/dev/zero", "/dev/stdin", "/dev/tty"}) {

@@ -113,7 +113,8 @@ const std::vector<FaultRow> k_rows{
     FaultRow{"RadiusWithUnknownUnit",
              4,
              "radius = \"10 MM\"",
-             {"die.toml:4:10: radius = \"10 MM\": unknown unit 'MM'; expected a length, for example \"10 mm\""}},
+             {"die.toml:4:10: radius = \"10 MM\": unknown unit 'MM'; expected a length, for example \"10 mm\"; "
+              "did you mean 'mm'?"}},
     FaultRow{"MisspeltMaterialKey",
              7,
              "poison_ratio = 0.3",
@@ -139,7 +140,8 @@ const std::vector<FaultRow> k_rows{
         "UnknownStressUnit",
         8,
         "yield_stress = \"50 MPA\"",
-        {"die.toml:8:16: yield_stress = \"50 MPA\": unknown unit 'MPA'; expected a stress, for example \"50 MPa\""}},
+        {"die.toml:8:16: yield_stress = \"50 MPA\": unknown unit 'MPA'; expected a stress, for example \"50 MPa\"; "
+         "did you mean 'MPa'?"}},
     FaultRow{"NegativeSurfaceEnergy",
              8,
              "yield_stress = \"50 MPa\"\nsurface_energy = \"-1 J/m^2\"",
@@ -218,7 +220,8 @@ const std::vector<FaultRow> k_rows{
     FaultRow{"RateInWrongUnit",
              13,
              "rate = \"1 N/s\"",
-             {"die.toml:13:8: rate = \"1 N/s\": unknown unit 'N/s'; expected a velocity, for example \"1 mm/s\""}},
+             {"die.toml:13:8: rate = \"1 N/s\": unknown unit 'N/s'; expected a velocity, for example \"1 mm/s\"; "
+              "did you mean 'm/s'?"}},
     FaultRow{"UntilIsEmpty",
              13,
              "duration = 1\nuntil = {}",

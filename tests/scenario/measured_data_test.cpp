@@ -296,6 +296,14 @@ TEST(MachineFiles, MayWriteMinusAsItsOwnSign) {
   EXPECT_EQ(read("Weg,Kraft\n\xE2\x88\x92-1.5,2\n").faults.size(), 1U);
 }
 
+TEST(MachineFiles, MayHaveAColumnThatIsAlwaysEmpty) {
+  const std::string text = "Weg [mm];Kraft [N];Remark\n0,5;1,5;\n1,5;2,5;\n";
+  EXPECT_EQ(read(text).data.columns[1].values, (std::vector{1.5, 2.5}));
+  const std::vector<ColumnRequest> wrong{{"weg", {"c.toml"}, "x = \"weg\""}};
+  EXPECT_EQ(read(text, {}, wrong).faults,
+            Cells{"c.toml:1:1: x = \"weg\": d.csv has no such column; expected one of Weg [mm], Kraft [N], Remark"});
+}
+
 TEST(MachineFiles, MayMarkThousands) {
   const Outcome german = read("Weg;Kraft\n0,5;998,25\n1,5;1.100,5\n-2,5;1.234.567\n");
   EXPECT_EQ(german.faults, Cells());

@@ -10,6 +10,7 @@
 
 #include "figure/markdown.hpp"
 #include "figure/page.hpp"
+#include "scenario/text_file.hpp"
 #include "study/atlas/atlas.hpp"
 #include "study/atlas/definition_language.hpp"
 #include "system/resolution.hpp"
@@ -259,6 +260,11 @@ std::vector<fs::path> write_atlas(const std::vector<AtlasFigure>& figures, const
   for (const AtlasFigure& made : figures) {
     if (!made.chart.panels.empty()) files.emplace_back(folder / fmt::format("{}.{}", made.name, made.format));
   }
+  const auto table_of = [&folder](const AtlasFigure& made) { return folder / (made.name + ".csv"); };
+  for (const AtlasFigure& made : figures) {
+    if (tables_text(made).empty()) continue;
+    for (const char* extension : {".csv", ".md"}) expect_own_file(folder / (made.name + extension), table_of(made));
+  }
   auto next = files.begin();
   for (const AtlasFigure& made : figures) {
     if (!made.chart.panels.empty()) {
@@ -269,9 +275,9 @@ std::vector<fs::path> write_atlas(const std::vector<AtlasFigure>& figures, const
     }
     if (const std::string tables = tables_text(made); !tables.empty()) {
       fs::create_directories(folder);
-      figure::write_whole(folder / (made.name + ".csv"), csv_text(tables_csv(made)));
+      figure::write_whole(table_of(made), csv_text(tables_csv(made)));
       figure::write_whole(folder / (made.name + ".md"), tables);
-      written.insert(written.end(), {folder / (made.name + ".csv"), folder / (made.name + ".md")});
+      written.insert(written.end(), {table_of(made), folder / (made.name + ".md")});
     }
   }
   return written;

@@ -11,6 +11,7 @@
 #include "figure/chart.hpp"
 #include "figure/run_curves.hpp"
 #include "history/run.hpp"
+#include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "system/resolution.hpp"
 
@@ -148,9 +149,10 @@ fs::path draw_profiles(const Table& profiles, const fs::path& output) {
   if (lowest < -2.0 * highest) pressure.y.lowest = -2.0 * highest;
   const figure::Chart chart{.panels = {std::move(pressure), std::move(surface)},
                             .references = figure::references_of(profiles)};
-  figure::draw_chart(chart, fmt::format("contact profiles of {}", profiles.header_value("scenario")), output);
   fs::path csv = output;
   csv.replace_extension(".csv");
+  expect_own_file(csv, csv);
+  figure::draw_chart(chart, fmt::format("contact profiles of {}", profiles.header_value("scenario")), output);
   figure::write_whole(csv, csv_text(profiles));
   return csv;
 }

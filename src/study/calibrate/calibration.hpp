@@ -1,7 +1,9 @@
 /// Calibration: fit of a scenario's numbers to measured data, with their uncertainty.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
@@ -142,6 +144,11 @@ struct CalibrationResult {
   std::vector<double> particle;       ///< displacement at the particle in every row; empty if the machine adds nothing
   std::vector<std::string> notes;     ///< notes for the user
   std::vector<std::string> warnings;  ///< why the fit is not to be trusted, with the likely cause
+
+  /// True if the data determine an interval of any parameter.
+  [[nodiscard]] bool has_intervals() const {
+    return std::ranges::any_of(intervals, [](const Interval& interval) { return std::isfinite(interval.lower); });
+  }
 };
 
 /// Share of the data below which a fit is bad and causes a warning. The share is R^2 if the loss is linear and the

@@ -42,6 +42,7 @@ class CalibrationReader {
 
   Calibration read() {
     const toml::table tree = parse_document(made_.text, made_.file);
+    expect_kind(tree, made_.file, "data");
     const bool scenario_is_table = tree["scenario"].is_table();
     const Keys keys = root_keys(scenario_is_table, tree["data"].is_array());
     const SourceLocation top{made_.file};
@@ -291,11 +292,10 @@ class CalibrationReader {
       names.push_back(known);
     }
     const std::string hint = did_you_mean(name, names);
-    faults_.add(spec.quantity_at, fmt::format("'{}' is no quantity of this scenario; expected one of {}{}{}",
-                                              shown(name), listed(names), hint,
-                                              spec.quantity.empty() && hint.empty()
-                                                  ? ", or { column = \"...\", quantity = \"...\", unit = \"...\" }"
-                                                  : ""));
+    faults_.add(
+        spec.quantity_at,
+        fmt::format("'{}' is no quantity of this scenario; expected one of {}{}{}", shown(name), listed(names), hint,
+                    spec.quantity.empty() ? ", or { column = \"...\", quantity = \"...\", unit = \"...\" }" : ""));
   }
 
   [[nodiscard]] std::optional<double> unit_factor(const MeasuredQuantity& column, const ColumnSpec& spec) {

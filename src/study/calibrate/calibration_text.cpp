@@ -136,6 +136,7 @@ std::vector<TitledTable> tables_of(const Calibration& calibration, const Calibra
 }
 
 std::string intervals_line(const CalibrationResult& result) {
+  if (!result.has_intervals()) return {};
   return fmt::format("intervals: {} ({})\n", calibration::k_intervals[static_cast<std::size_t>(result.method)],
                      result.method_reason);
 }

@@ -86,7 +86,7 @@ void note_residual_tests(const Calibration& calibration, const CalibrationResult
       "that is not noise",
       tests.runs, tests.expected_runs, tests.runs_p, tests.correlation, tests.correlation_p);
   const bool draws_blocks = result.method == IntervalMethod::bootstrap && !calibration.knows_noise();
-  if (tests.correlation > 0.0 && tests.correlation < 1.0 && !draws_blocks) {
+  if (tests.correlation > 0.0 && tests.correlation < 1.0 && !draws_blocks && result.has_intervals()) {
     note += fmt::format(", and intervals are too narrow, by a factor of about {:.2g}",
                         std::sqrt((1.0 + tests.correlation) / (1.0 - tests.correlation)));
   }

@@ -11,6 +11,9 @@
 
 namespace monograin {
 
+/// Table of the bands in the folder of a sweep.
+inline constexpr const char* k_bands_file = "bands.csv";
+
 /// Percentiles of one step of the program, over abscissae that all runs share.
 struct StepBands {
   std::size_t step = 0;  ///< from 1

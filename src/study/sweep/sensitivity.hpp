@@ -10,6 +10,9 @@
 
 namespace monograin {
 
+/// Table of the sensitivities in the folder of a sweep.
+inline constexpr const char* k_sensitivities_file = "sensitivity.csv";
+
 /// One result with its indices or its effects, depending on the design; the other member is empty.
 struct ResultSensitivity {
   std::string result;  ///< its formula

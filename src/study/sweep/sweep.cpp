@@ -21,6 +21,8 @@
 #include "numerics/parallel.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
+#include "study/sweep/bands.hpp"
+#include "study/sweep/sensitivity.hpp"
 #include "study/sweep/sweep_journal.hpp"
 #include "system/resolution.hpp"
 
@@ -182,16 +184,12 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
 }
 
 void prepare(const fs::path& folder) {
-  if (fs::exists(folder / "run.json")) {
-    throw std::runtime_error(fmt::format("{}: is the folder of a run; choose another folder with -o", folder.string()));
-  }
-  const fs::path results = folder / k_results;
-  if (fs::exists(fs::symlink_status(results)) &&
-      !read_text_file(results, k_program_line.size()).text.starts_with(k_program_line)) {
+  if (fs::exists(folder / k_run_marker) || fs::exists(folder / k_written_files)) {
     throw std::runtime_error(
-        fmt::format("{}: is none that monograin has written, and would be replaced; choose another folder with -o",
-                    results.string()));
+        fmt::format("{}: holds the result of another command; choose another folder with -o", folder.string()));
   }
+  for (const char* name : {k_results, k_bands_file, k_sensitivities_file})
+    expect_own_file(folder / name, folder / name);
   prepare_folder(folder);
 }
 

@@ -134,10 +134,11 @@ void append_scene(const BenchScene& scene, std::string& text) {
 
 void append_auto(const std::vector<BenchScene>& scenes, std::string& text) {
   text +=
-      "\n## `auto`\n\nIts time over that of the fastest of the others at the same error, the time of `cvode-bdf` over "
-      "its\nown, and its time over that of one evaluation of the law for each row. \"bdf at its own\": at the error "
-      "that `auto`\nhas at the default rtol; \">\" where `cvode-bdf` never comes to that, but only "
-      "to a larger one.\n\n";
+      "\n## `auto`\n\nRatios of times. Columns \"at\": `auto` over the fastest of the other integrators at that error. "
+      "Columns \"bdf\": `cvode-bdf`\nover `auto` at that error; \"bdf at its own\" is at the error that `auto` has at "
+      "the "
+      "default rtol, and \">\" means that\n`cvode-bdf` only comes to a larger one. \"over the floor\": `auto` over one "
+      "evaluation of the law for each row.\n\n";
   std::vector<MarkdownRow> rows{{"scene", "is"}};
   for (const double error : k_errors) rows.front().push_back(fmt::format("at {:.0e}", error));
   for (const double error : k_errors) rows.front().push_back(fmt::format("bdf at {:.0e}", error));

@@ -303,7 +303,8 @@ material.surface_energy = { values = [1] }
           "sweep.toml:6:1: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
           "sweep.toml:7:49: loading.configuration = dia: expected one of simple, die, hydrostatic, oblique-die, "
           "walls; did you mean 'die'?",
-          "sweep.toml:8:36: from = \"10 MPA\": unknown unit 'MPA'; expected a stress, for example \"50 MPa\"",
+          "sweep.toml:8:36: from = \"10 MPA\": unknown unit 'MPA'; expected a stress, for example \"50 MPa\"; did you "
+          "mean 'MPa'?",
           "sweep.toml:9:29: \"material.youngs_modulus\": expected one of { from = 0.2, to = 0.48 }, { values = [...] "
           "}, "
           "{ mean, std }, { lognormal = [median, standard deviation of the logarithm] }, { triangular = [lowest, "
@@ -319,12 +320,12 @@ material.surface_energy = { values = [1] }
 TEST_F(SweepFiles, ATablesFaultsBearItsPlaces) {
   write("runs.csv", "material.yield_stress[MPA],material.poison_ratio,loading.configuration\n1,0.3,simple\n");
   const std::string text = "scenario = \"small.toml\"\ndesign = \"table\"\ntable = \"runs.csv\"\n";
-  EXPECT_EQ(
-      faults_of(text),
-      (std::vector<std::string>{
-          "runs.csv:1:1: material.yield_stress[MPA]: unknown unit 'MPA'; expected a stress, for example \"50 MPa\"",
-          "runs.csv:1:28: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
-      }));
+  EXPECT_EQ(faults_of(text), (std::vector<std::string>{
+                                 "runs.csv:1:1: material.yield_stress[MPA]: unknown unit 'MPA'; expected a stress, for "
+                                 "example \"50 MPa\"; did "
+                                 "you mean 'MPa'?",
+                                 "runs.csv:1:28: unknown key 'poison_ratio'; did you mean 'poisson_ratio'?",
+                             }));
   write("runs.csv", "material.yield_stress[MPa],loading.configuration\n1,simple\nmuch,simple\n3\n4,dei\n");
   EXPECT_EQ(faults_of(text), (std::vector<std::string>{"runs.csv:4:1: the row has 1 cells, but there are 2 headings"}));
   write("runs.csv", "material.yield_stress[MPa],loading.configuration\n1,simple\nmuch,simple\n 4 , dei\n");
@@ -362,7 +363,7 @@ TEST_F(SweepFiles, AFaultOfTheScenarioItselfIsAFault) {
                                    "small.toml:5:1: unknown key 'yuongs_modulus' in [material]; did you mean "
                                    "'youngs_modulus'?",
                                    "small.toml:7:16: yield_stress = \"20 MPA\": unknown unit 'MPA'; expected a stress, "
-                                   "for example \"50 MPa\""}));
+                                   "for example \"50 MPa\"; did you mean 'MPa'?"}));
 }
 
 TEST_F(SweepFiles, AScenarioNeedNotHaveWhatIsVaried) {
