@@ -30,13 +30,6 @@ constexpr std::array<Dimension, 9> k_measured_dimensions{
     Dimension::angle,  Dimension::velocity, Dimension::force_rate,     Dimension::strain_rate};
 constexpr std::array<std::string_view, 9> k_other_units{"-", "1", "%", "sec", "Hz", "V", "°C", "C", "R0"};
 
-bool is_unit(std::string_view text) {
-  if (text.empty()) return false;
-  if (std::ranges::find(k_other_units, text) != k_other_units.end()) return true;
-  return std::ranges::any_of(k_measured_dimensions,
-                             [text](Dimension dimension) { return is_unit_of(text, dimension); });
-}
-
 bool is_in(std::string_view text, char opening, char closing) {
   return text.size() > 2 && text.front() == opening && text.back() == closing;
 }
@@ -62,12 +55,12 @@ Heading taken_apart(std::string_view heading) {
   const std::size_t square = heading.rfind('[');
   if (square != std::string_view::npos && square > 0 && heading.ends_with(']')) return split(square, 1, 1);
   if (const std::size_t round = heading.rfind('('); round != std::string_view::npos && round > 0) {
-    if (const Heading parts = split(round, 1, 1); heading.ends_with(')') && is_unit(parts.unit)) return parts;
+    if (const Heading parts = split(round, 1, 1); heading.ends_with(')') && is_known_unit(parts.unit)) return parts;
   }
   for (const std::string_view word : {" / ", " in ", ", "}) {
     const std::size_t at = heading.rfind(word);
     if (at == std::string_view::npos || at == 0) continue;
-    if (const Heading parts = split(at, word.size(), 0); is_unit(parts.unit)) return parts;
+    if (const Heading parts = split(at, word.size(), 0); is_known_unit(parts.unit)) return parts;
   }
   return {heading, {}};
 }
@@ -292,7 +285,7 @@ class LayoutFinder {
 
   [[nodiscard]] bool names_units(std::size_t row) const {
     if (rows_[row].numbers > 0) return false;
-    return std::ranges::any_of(rows_[row].cells, [](const Cell& cell) { return is_unit(bare_unit(cell.text)); });
+    return std::ranges::any_of(rows_[row].cells, [](const Cell& cell) { return is_known_unit(bare_unit(cell.text)); });
   }
 
   /// True if a row is one of units. @param first  index of the first row of data
@@ -365,6 +358,13 @@ std::string_view separator_word(char separator) noexcept {
     default:
       return "blanks";
   }
+}
+
+bool is_known_unit(std::string_view text) {
+  if (text.empty()) return false;
+  if (std::ranges::find(k_other_units, text) != k_other_units.end()) return true;
+  return std::ranges::any_of(k_measured_dimensions,
+                             [text](Dimension dimension) { return is_unit_of(text, dimension); });
 }
 
 std::string_view unit_in(std::string_view heading) noexcept { return taken_apart(heading).unit; }

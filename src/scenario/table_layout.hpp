@@ -56,6 +56,9 @@ struct TableLayout {
 /// Name of a separator: "comma", "semicolon", "tab", "blanks".
 [[nodiscard]] std::string_view separator_word(char separator) noexcept;
 
+/// True for a unit of a quantity that machines measure, also for those that the program does not convert: "%", "V".
+[[nodiscard]] bool is_known_unit(std::string_view text);
+
 /// Unit in a heading: "N" of "force[N]" and "force [N]", also of "force (N)", "force / N" and "force in N" if the unit
 /// is known. Empty if there is none.
 [[nodiscard]] std::string_view unit_in(std::string_view heading) noexcept;

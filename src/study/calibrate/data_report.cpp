@@ -146,6 +146,23 @@ figure::ChartSeries turning_points_of(const DataReport& report) {
   return series;
 }
 
+/// Why a calibration would refuse the data.
+std::vector<std::string> objections_to(const DataReport& report) {
+  std::vector<std::string> objections;
+  const std::size_t rows = report.lines.size() + report.left_out;
+  if (static_cast<double>(report.left_out) > k_most_missing * static_cast<double>(rows)) {
+    objections.push_back(
+        fmt::format("a calibration refuses this file: {} of {} rows have no number in x or y, more than {:g} %",
+                    report.left_out, rows, 100.0 * k_most_missing));
+  }
+  for (const DataAxis* axis : {&report.x, &report.y}) {
+    if (axis->unit.empty() || is_known_unit(axis->unit)) continue;
+    objections.push_back(fmt::format(
+        "'{}' is no unit that monograin knows; a calibration needs {{ column, quantity, unit }}", shown(axis->unit)));
+  }
+  return objections;
+}
+
 }  // namespace
 
 DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
@@ -191,6 +208,7 @@ DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
   report.lines = std::move(data.lines);
   report.left_out = data.left_out.size();
   report.branches = branches_of(report.x.values);
+  report.remarks = objections_to(report);
   return report;
 }
 

@@ -47,7 +47,7 @@ struct DataReport {
   std::vector<std::size_t> lines;  ///< line numbers of the rows with x and y
   std::size_t left_out = 0;        ///< rows without x or y
   std::vector<DataBranch> branches;
-  std::vector<std::string> remarks;  ///< how a calibration interprets x and y
+  std::vector<std::string> remarks;  ///< how a calibration interprets x and y, or why it would refuse them
 };
 
 /// The columns to use as x and y: a heading or a number. Empty: the first length and the first force, else the first

@@ -58,6 +58,14 @@ TEST_F(DataReportTest, WithoutUnitsTakesTheFirstTwoColumnsOfNumbers) {
   EXPECT_EQ(report.y.name, "b");
 }
 
+TEST_F(DataReportTest, SaysWhyACalibrationWouldRefuseTheFile) {
+  const DataReport report = report_of_file(write("d.csv", "d [furlong],F [N]\n1,2\n2,\n3,4\n"));
+  ASSERT_EQ(report.remarks.size(), 2U);
+  EXPECT_NE(report.remarks[0].find("1 of 3 rows have no number in x or y, more than 10 %"), std::string::npos);
+  EXPECT_NE(report.remarks[1].find("'furlong' is no unit that monograin knows"), std::string::npos);
+  EXPECT_TRUE(report_of_file(write("e.csv", "d [mm],F [N]\n1,2\n2,3\n3,4\n")).remarks.empty());
+}
+
 TEST_F(DataReportTest, FindsTheWaysOfNoisyCycles) {
   std::mt19937 generator(3);
   std::normal_distribution<double> noise(0.0, 0.002);
