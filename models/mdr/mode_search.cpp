@@ -133,9 +133,11 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
 
 bool ModeSearch::let_go_of_pulling_walls(double xi, std::span<double> y, std::vector<Event>& log) {
   p_.evaluated(xi, y);
+  const CentreVector softest = centre_stiffness(p_).direction.normalized();
   bool any = false;
   for (std::size_t i = 0; i < p_.size(); ++i) {
     if (!p_.is_loaded(i) || !p_.branch(i).touches() || !(p_.drive(i).value(xi) < 0.0)) continue;
+    if (!(std::abs(p_.centre().direction(i).dot(softest)) > k_no_direction)) continue;
     separate(i, y, log);
     any = true;
   }

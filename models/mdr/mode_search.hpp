@@ -33,7 +33,7 @@ class ModeSearch {
                                  std::vector<Event>& log);
   /// Closes the nearest walls together with contact i, which a force begins to press.
   void close_with(std::size_t i, std::vector<Event>& log);
-  /// Opens the contacts of the walls that a prescribed force pulls away.
+  /// Opens the contacts of the walls that a prescribed force pulls away, along the softest direction of the centre.
   /// @return false if there are none
   bool let_go_of_pulling_walls(double xi, std::span<double> y, std::vector<Event>& log);
   /// Finds the consistent mode, and moves centre and walls to equilibrium in it.

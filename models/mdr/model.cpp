@@ -96,8 +96,7 @@ constexpr std::array<string_view, 9> k_domain{
     "with pressure_table: contacts at their largest overlap within the table; the run stops where it ends",
     "warned: adhesive contacts whose pull-off the convex indenter, without yielding in tension, does not predict well",
     "at yield under a prescribed force (ellipse) the wall gives way at once and takes the apparent radius along: at "
-    "E/Y "
-    "= 10 by 1.5e-4 R0 between two walls and 4.1e-4 R0 between six, less for stiffer particles",
+    "E/Y = 10 by 1.5e-4 R0 between two walls and 4.1e-4 R0 between six, less for stiffer particles",
     "under a prescribed force a plastic contact that has softened to 1 % of its first stiffness, at overlaps of nine "
     "tenths "
     "of the apparent radius, ends the run: at a given radius it bears no more than a largest force",

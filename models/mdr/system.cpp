@@ -94,9 +94,10 @@ void System::stick_under_force(std::span<const double> y, std::vector<Event>& lo
     const Indenter indenter = p.branch(i).frame(p.law(), y[k_radius], now.overlap).indenter;
     const double critical = p.branch(i).pull_off(p.law(), indenter).by_force.contact_radius;
     const double rate = p.drive(i).rate();
-    if (!(rate > 0.0) && now.contact.contact_radius > critical) continue;
+    const double at_rest = k_same_value * p.drive(i).size();
+    if (!(rate > at_rest) && now.contact.contact_radius > critical) continue;
     p.set_branch(i, p.branch(i).with_edge({Edge::sticking, now.contact.contact_radius}));
-    if (rate >= 0.0) log.push_back({"stick", static_cast<int>(i)});
+    if (rate >= -at_rest) log.push_back({"stick", static_cast<int>(i)});
   }
 }
 
@@ -107,19 +108,22 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   const bool are_marks = std::ranges::all_of(fired_, &Guard::is_mark);
   std::optional<DomainEnd> end;
   const std::size_t logged = log.size();
+  const std::optional<Diagnostic> validity = now_.validity;
   try {
     decide_mode(y, [&] {
       end = search_.apply(fired_, xi, y, now_.caps, log);
       if (!end && !are_marks) search_.resolve(xi, y, log);
     });
   } catch (const std::domain_error&) {
-    // If contacts give way under a tension that no others bear, the walls that pull let go, as from a fixed centre: the
-    // program has no place for a particle that leaves with a wall.
-    if (std::ranges::find(fired_, k_unstable, &Guard::kind) == fired_.end()) throw;
+    // If contacts no longer hold the centre under a tension that no others bear, the walls that pull let go, as from a
+    // fixed centre: the program has no place for a particle that leaves with a wall.
+    if (std::erase_if(fired_, [](const Guard& guard) { return guard.kind == k_unstable; }) == 0) throw;
     log.resize(logged);
+    now_.validity = validity;
     decide_mode(y, [&] {
+      end = search_.apply(fired_, xi, y, now_.caps, log);
       if (!search_.let_go_of_pulling_walls(xi, y, log)) throw;
-      search_.resolve(xi, y, log);
+      if (!end) search_.resolve(xi, y, log);
     });
   }
   if (end) return end;

@@ -510,8 +510,12 @@ TEST_P(MdrFreeCentreUnderForce, IsPulledOffAtTheTensionThatTheWeakerSideBears) {
       scenario.loading.walls[1] = wall("a", {std::sin(tilt), 0.0, -std::cos(tilt)});
       scenario.loading.walls.push_back(wall("b", {-std::sin(tilt), 0.0, -std::cos(tilt)}));
     }
+    // Across the pull another wall draws at the particle, with less than its contact bears.
+    scenario.loading.walls.push_back(wall("y+", Eigen::Vector3d::UnitY(), {force_ramp(2e-5), force_ramp(-2e-5)}));
+    scenario.loading.walls.push_back(wall("y-", -Eigen::Vector3d::UnitY()));
     const TestRun result = run(scenario, GetParam());
     ASSERT_EQ(result.record.status, RunStatus::complete) << degrees << ": " << result.record.message;
+    EXPECT_NEAR(result.last("y+.force"), -2e-5, 1e-12) << degrees;
     const double tension = bears * (degrees > 0.0 ? std::min(1.0, 2.0 * std::cos(tilt)) : 1.0);
     EXPECT_NEAR(result.time_of("pull-off"), 1.0 + (from + tension) / (from - to), 1e-6) << degrees;
     EXPECT_EQ(result.last("z+.force"), 0.0) << degrees;
