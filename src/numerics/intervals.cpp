@@ -98,8 +98,8 @@ class Profile {
     const double error = uncertainty_.standard_error(k);
     const double range = std::abs(bound - best);
     double step =
-        std::isfinite(error) && error > 0.0 ? std::min(uncertainty_.t_quantile * error, range) : k_first_step * range;
-    const double t = uncertainty_.t_quantile * uncertainty_.excess_over_cost(k);
+        std::isfinite(error) && error > 0.0 ? std::min(uncertainty_.half_width(k), range) : k_first_step * range;
+    const double t = uncertainty_.t_quantile_of(k) * uncertainty_.excess_over_cost(k);
     Point inner{best, rise_of(from_->cost), from_->parameters};
     Point outer;
     for (int count = 0;; ++count) {  // outwards
@@ -179,7 +179,7 @@ class Profile {
 /// True if a minimum is so low that it belongs to the interval of a parameter.
 bool is_low(const LeastSquaresSolution& solution, const LocalMinimum& minimum, const Uncertainty& uncertainty,
             std::size_t k) {
-  const double t = uncertainty.t_quantile * uncertainty.excess_over_cost(k);
+  const double t = uncertainty.t_quantile_of(k) * uncertainty.excess_over_cost(k);
   return (minimum.cost - solution.cost) / uncertainty.rise < t * t;
 }
 

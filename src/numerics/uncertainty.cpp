@@ -60,8 +60,8 @@ struct NormalInverse {
   }
 };
 
-/// J^T D^2 J. Rows beyond the deviations are those of priors, with d = 1.
-Eigen::MatrixXd noise_of_normal(const Eigen::MatrixXd& jacobian, std::span<const double> deviations) {
+/// J^T D^2 J. Rows beyond the deviations have d = 1.
+Eigen::MatrixXd noise_of_normal(const Eigen::Ref<const Eigen::MatrixXd>& jacobian, std::span<const double> deviations) {
   Eigen::VectorXd squares = Eigen::VectorXd::Ones(jacobian.rows());
   for (std::size_t i = 0; i < deviations.size(); ++i) {
     squares[static_cast<Eigen::Index>(i)] = deviations[i] * deviations[i];
@@ -107,15 +107,35 @@ double Uncertainty::correlation(std::size_t first, std::size_t second) const {
   return both / (standard_error(first) * standard_error(second));
 }
 
+double Uncertainty::t_quantile_for(double share) const {
+  if (!(share < 1.0)) return t_quantile;
+  const double level_below = 0.5 * (1.0 + level);
+  // Beyond so many degrees of freedom the distribution is normal to four digits.
+  constexpr double k_many = 1e4;
+  const double degrees = static_cast<double>(degrees_of_freedom) / (share * share);
+  return degrees < k_many ? boost::math::quantile(boost::math::students_t(degrees), level_below)
+                          : boost::math::quantile(boost::math::normal(), level_below);
+}
+
+double Uncertainty::t_quantile_of(std::size_t parameter) const {
+  const auto k = static_cast<Eigen::Index>(parameter);
+  return t_quantile_for(data_covariance.size() > 0 ? data_covariance(k, k) / covariance(k, k) : 1.0);
+}
+
 double Uncertainty::half_width(const Eigen::Ref<const Eigen::VectorXd>& gradient) const {
-  double variance = 0.0;
-  for (Eigen::Index i = 0; i < gradient.size(); ++i) {
-    for (Eigen::Index j = 0; j < gradient.size(); ++j) {
-      // Parameters without an error of their own are taken as exact.
-      if (std::isfinite(covariance(i, j))) variance += gradient[i] * covariance(i, j) * gradient[j];
+  // Parameters without an error of their own are taken as exact.
+  const auto variance_in = [&gradient](const Eigen::MatrixXd& matrix) {
+    double variance = 0.0;
+    for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+      for (Eigen::Index j = 0; j < gradient.size(); ++j) {
+        if (std::isfinite(matrix(i, j))) variance += gradient[i] * matrix(i, j) * gradient[j];
+      }
     }
-  }
-  return t_quantile * std::sqrt(std::max(variance, 0.0));
+    return std::max(variance, 0.0);
+  };
+  const double variance = variance_in(covariance);
+  const double share = data_covariance.size() > 0 && variance > 0.0 ? variance_in(data_covariance) / variance : 1.0;
+  return t_quantile_for(share) * std::sqrt(variance);
 }
 
 double deviation_of(const LeastSquaresProblem& problem, std::span<const double> residuals, std::size_t n) {
@@ -181,6 +201,12 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
       }
     }
   }
+  // A known s is no estimate, and all of a variance is known.
+  Eigen::MatrixXd of_data;
+  if (const auto rows = static_cast<Eigen::Index>(n); !known && rows < jacobian.rows()) {
+    of_data = normal.inverse * noise_of_normal(normal.scaled.topRows(rows), result.deviations) * normal.inverse;
+    result.data_covariance = result.covariance;
+  }
   const double variance = result.standard_deviation * result.standard_deviation;
   for (std::size_t i = 0; i < interior.size(); ++i) {
     for (std::size_t j = 0; j < interior.size(); ++j) {
@@ -190,6 +216,7 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
       const double unit = variance / (normal.norms[row] * normal.norms[column]);
       result.covariance(interior[i], interior[j]) = unit * inverse(row, column);
       result.cost_covariance(interior[i], interior[j]) = unit * normal.inverse(row, column);
+      if (of_data.size() > 0) result.data_covariance(interior[i], interior[j]) = unit * of_data(row, column);
     }
   }
   return result;

@@ -168,6 +168,31 @@ TEST(Uncertainty, IsThatOfTheStraightLineInClosedForm) {
   EXPECT_NEAR(uncertainty.half_width(at_mean), uncertainty.t_quantile * s / std::sqrt(6.0), 1e-9);
 }
 
+TEST(Uncertainty, OfAPriorThatKnowsMoreThanTheDataIsThatOfThePrior) {
+  // One parameter: three data, whose mean it is, and a prior of deviation d. The noise s is estimated from the data.
+  const std::vector<double> y{1.0, 1.2, 0.9};
+  for (const double d : {1e-3, 0.1, 1e3}) {
+    const double s = std::sqrt(0.07 / 3.0);  // of the three
+    const auto problem =
+        problem_of(y, y, {{-9.0, 9.0, false, {}}}, [](double, std::span<const double> p) { return p[0]; });
+    LeastSquaresSolution solution;
+    solution.parameters = {31.0 / 30.0};
+    solution.bounds = {LeastSquaresSolution::Bound::none};
+    for (const double value : y) solution.residuals.push_back(value - 31.0 / 30.0);
+    solution.residuals.push_back(0.0);
+    Eigen::MatrixXd jacobian(4, 1);
+    jacobian << -1.0, -1.0, -1.0, s / d;
+    const Uncertainty uncertainty = uncertainty_of(problem, solution, jacobian, 3, 0.95);
+    const double variance = 1.0 / (3.0 / (s * s) + 1.0 / (d * d));
+    EXPECT_NEAR(uncertainty.standard_error(0), std::sqrt(variance), 1e-9 * std::sqrt(variance));
+    const double t = uncertainty.t_quantile_of(0);
+    if (d == 1e3) EXPECT_NEAR(t, 4.30265273, 1e-6) << "Student's t, 2 degrees of freedom";
+    if (d == 1e-3) EXPECT_NEAR(t, 1.95996398, 1e-3) << "normal";
+    EXPECT_LE(t, 4.30265274);
+    EXPECT_NEAR(uncertainty.half_width(Eigen::VectorXd::Ones(1)), uncertainty.half_width(0), 1e-12);
+  }
+}
+
 TEST(Uncertainty, IntervalsCoverTheTruthAsOftenAsTheySay) {
   // Four points and two parameters: the quantile of the normal distribution would cover 81 % here, not 95 %.
   const std::vector<double> x{0.0, 0.3, 0.7, 1.0};
