@@ -6,9 +6,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "history/run.hpp"
 #include "scenario/faults.hpp"
+#include "scene/scene.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -31,31 +33,20 @@ std::vector<double> measured_instants(double duration, int points) {
   return instants;
 }
 
-/// Finds the rows of a history that stay at their instants when a free number changes.
-class Instants {
- public:
-  Instants(const ExperimentPlan& plan, const Table& history) : plan_(plan), history_(history) {
-    for (const FreeParameter& parameter : plan.free) {
-      columns_.push_back(*history.find(derivative_name("time", parameter.key.path)));
-    }
-    if (history.row_count() > 0) duration_ = history.at(history.row_count() - 1, 0);
+/// True if the instant of a row depends on no free number; false where a derivative is undefined.
+bool has_fixed_instant(const ExperimentPlan& plan, const Table& history, std::size_t row) {
+  const double duration = history.at(history.row_count() - 1, *history.find("time"));
+  for (std::size_t k = 0; k < plan.free.size(); ++k) {
+    const std::size_t column = *history.find(derivative_name("time", plan.free[k].key.path));
+    if (!(std::abs(history.at(row, column) * plan.values[k]) <= k_fixed_instant * duration)) return false;
   }
+  return true;
+}
 
-  /// True if the instant of a row depends on no free number; false where a derivative is undefined.
-  [[nodiscard]] bool is_fixed(std::size_t row) const {
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      const double change = history_.at(row, columns_[k]) * plan_.values[k];
-      if (!(std::abs(change) <= k_fixed_instant * duration_)) return false;
-    }
-    return true;
-  }
-
- private:
-  const ExperimentPlan& plan_;
-  const Table& history_;
-  std::vector<std::size_t> columns_;
-  double duration_ = 0.0;
-};
+/// "step 2" or "steps 1, 3".
+std::string named(const std::vector<std::size_t>& steps) {
+  return fmt::format("step{} {}", steps.size() > 1 ? "s" : "", fmt::join(steps, ", "));
+}
 
 /// Program that goes through the displacements of a run: forces, and steps that a condition ends, are replaced by the
 /// displacements to which they led. A fit goes along the measured displacement, too; at fixed forces the place of the
@@ -63,35 +54,21 @@ class Instants {
 class DisplacementProgram {
  public:
   /// @param history  of a run of the scenario
-  DisplacementProgram(const CheckedScenario& scenario, const Table& history) : history_(history) {
+  DisplacementProgram(const CheckedScenario& scenario, const Table& history)
+      : scenario_(scenario), history_(history), scene_(make_scene(scenario)) {
     find_ends();
-    const std::vector<Step>& shared = scenario.loading.steps;
-    const std::vector<WallSpec>& walls = scenario.loading.walls;
     is_replaced_.resize(ends_.size());
-    const auto mark = [this](const std::vector<Step>& steps) {
-      for (std::size_t k = 0; k < std::min(steps.size(), ends_.size()); ++k) {
-        const bool asks = steps[k].kind == Step::Kind::force || !steps[k].until.empty();
-        if (asks && duration_of(k) > 0.0) is_replaced_[k] = true;
-      }
-    };
-    mark(shared);
-    for (const WallSpec& wall : walls) mark(wall.steps);
-    if (walls.empty()) add("loading.steps", "axial", shared);
-    for (std::size_t i = 0; i < walls.size(); ++i) {
-      if (walls[i].is_fixed) continue;
-      add(fmt::format("loading.wall[{}].steps", i), walls[i].name, walls[i].steps.empty() ? shared : walls[i].steps);
+    for (const Channel& channel : scene_.channels) mark(channel.program);
+    for (std::size_t k = 0; k < ends_.size(); ++k) {
+      if (is_replaced_[k]) replaced_.push_back(k + 1);
     }
+    if (!replaced_.empty()) override_programs();
   }
 
-  /// Numbers of the replaced steps, from 1; empty if there are none, or a wall has no column of its displacement.
-  [[nodiscard]] std::vector<std::size_t> replaced() const {
-    std::vector<std::size_t> numbers;
-    for (std::size_t k = 0; k < is_replaced_.size() && has_columns_; ++k) {
-      if (is_replaced_[k]) numbers.push_back(k + 1);
-    }
-    return numbers;
-  }
-  /// Overrides of the scenario that make the program.
+  /// Numbers of the steps to be replaced, from 1.
+  [[nodiscard]] const std::vector<std::size_t>& replaced() const noexcept { return replaced_; }
+  /// Overrides of the scenario that make the program; empty if none makes it: walls that share their steps have gone
+  /// different distances, or the model has no walls.
   [[nodiscard]] const std::vector<std::string>& overrides() const noexcept { return overrides_; }
 
  private:
@@ -110,55 +87,86 @@ class DisplacementProgram {
     return history_.at(ends_[step], time) - (step > 0 ? history_.at(ends_[step - 1], time) : 0.0);
   }
 
-  void add(const std::string& key, const std::string& contact_class, const std::vector<Step>& steps) {
-    const auto column = history_.find(contact_class + ".displacement");
-    if (!column) {
-      has_columns_ = false;
-      return;
+  /// Marks steps that prescribe a force or a stress, hold one, or end by a condition.
+  void mark(const std::vector<Step>& program) {
+    bool is_force = false;
+    for (std::size_t k = 0; k < std::min(program.size(), ends_.size()); ++k) {
+      const auto control = control_of(program[k].kind);
+      if (control) is_force = *control == Control::force || *control == Control::stress;
+      if (is_force || !program[k].until.empty()) is_replaced_[k] = true;
     }
+  }
+
+  void override_programs() {
+    const std::vector<WallSpec>& walls = scenario_.loading.walls;
+    std::vector<std::string> shared;  // programs of the channels that follow the steps of [loading]
+    for (std::size_t c = 0; c < scene_.classes.size(); ++c) {
+      const Channel& channel = scene_.channels[c];
+      if (channel.program.empty()) continue;
+      const std::string program = program_of(channel);
+      if (walls.empty()) shared.push_back(program);
+      for (const std::string& name : scene_.walls[c]) {
+        const auto wall = std::ranges::find(walls, name, &WallSpec::name);
+        if (wall == walls.end() || wall->is_fixed) continue;
+        if (wall->steps.empty())
+          shared.push_back(program);
+        else
+          overrides_.push_back(fmt::format("loading.wall[{}].steps = {}", wall - walls.begin(), program));
+      }
+    }
+    if (!shared.empty()) overrides_.push_back("loading.steps = " + shared.front());
+    if (std::ranges::adjacent_find(shared, std::not_equal_to()) != shared.end()) overrides_.clear();
+  }
+
+  /// The steps of a channel as a text. Steps that ended where they began are left out, in all channels alike.
+  [[nodiscard]] std::string program_of(const Channel& channel) const {
     std::vector<std::string> texts;
-    for (std::size_t k = 0; k < steps.size(); ++k) {
-      const bool is_replaced = k < is_replaced_.size() && is_replaced_[k];
-      texts.push_back(
-          is_replaced && control_of(steps[k].kind)
-              ? fmt::format("{{ displacement = {}, duration = {} }}", history_.at(ends_[k], *column), duration_of(k))
-              : text_of(steps[k], is_replaced ? std::optional(duration_of(k)) : steps[k].duration));
+    for (std::size_t k = 0; k < channel.program.size(); ++k) {
+      const Step& step = channel.program[k];
+      if (k >= ends_.size()) break;  // the run has ended before
+      const double duration = duration_of(k);
+      if (!(duration > 0.0)) continue;
+      const bool is_ramp = step.kind == Step::Kind::displacement || is_replaced_[k];
+      const std::string target = step.kind == Step::Kind::detach ? "detach = true"
+                                 : is_ramp                       ? fmt::format("displacement = {}", end_of(channel, k))
+                                                                 : "hold = true";
+      const std::string pace = step.kind == Step::Kind::detach && step.rate ? fmt::format("rate = {}", *step.rate)
+                                                                            : fmt::format("duration = {}", duration);
+      texts.push_back(fmt::format("{{ {}, {} }}", target, pace));
     }
-    overrides_.push_back(fmt::format("{} = [{}]", key, fmt::join(texts, ", ")));
+    return fmt::format("[{}]", fmt::join(texts, ", "));
   }
 
-  static std::string text_of(const Step& step, std::optional<double> duration) {
-    std::string text;
-    switch (step.kind) {
-      case Step::Kind::displacement:
-        text = fmt::format("displacement = {}", step.target);
-        break;
-      case Step::Kind::force:
-        text = fmt::format("force = {}", step.target);
-        break;
-      case Step::Kind::detach:
-        text = "detach = true";
-        break;
-      default:
-        text = "hold = true";
-    }
-    if (duration) text += fmt::format(", duration = {}", *duration);
-    if (step.rate && !duration) text += fmt::format(", rate = {}", *step.rate);
-    return "{ " + text + " }";
+  /// Displacement to which a step leads. A step that ends as the contact is lost stops short of that: whether it is
+  /// lost within the step would depend on what is sought, and no row after it would have a derivative.
+  [[nodiscard]] double end_of(const Channel& channel, std::size_t step) const {
+    constexpr double k_short = 1e-3;  // share of the step
+    const std::size_t displacement = *history_.find(channel.name + ".displacement");
+    const std::size_t force = *history_.find(channel.name + ".force");
+    const double end = history_.at(ends_[step], displacement);
+    if (step == 0 || !is_replaced_[step] || history_.at(ends_[step], force) != 0.0) return end;
+    return end + k_short * (history_.at(ends_[step - 1], displacement) - end);
   }
 
+  const CheckedScenario& scenario_;
   const Table& history_;
+  Scene scene_;
   std::vector<std::size_t> ends_;  ///< last row of each step
   std::vector<bool> is_replaced_;
+  std::vector<std::size_t> replaced_;
   std::vector<std::string> overrides_;
-  bool has_columns_ = true;
 };
 
-bool prescribes(const CheckedScenario& scenario, Step::Kind kind) {
-  const auto has_kind = [kind](const std::vector<Step>& steps) {
-    return std::ranges::find(steps, kind, &Step::kind) != steps.end();
-  };
-  return has_kind(scenario.loading.steps) || std::ranges::any_of(scenario.loading.walls, has_kind, &WallSpec::steps);
+/// Steps, from 1, that prescribe a displacement of a class of walls.
+std::vector<std::size_t> displacement_steps(const CheckedScenario& scenario, std::string_view contact_class) {
+  std::vector<std::size_t> steps;
+  const Scene scene = make_scene(scenario);
+  for (const Channel& channel : scene.channels) {
+    for (std::size_t k = 0; channel.name == contact_class && k < channel.program.size(); ++k) {
+      if (channel.program[k].kind == Step::Kind::displacement) steps.push_back(k + 1);
+    }
+  }
+  return steps;
 }
 
 Eigen::MatrixXd stacked(const std::vector<FreeParameter>& free, std::span<const double> values,
@@ -202,21 +210,28 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
   }
   const double duration = rough.row_count() > 0 ? rough.at(rough.row_count() - 1, *rough.find("time")) : 0.0;
 
-  const bool is_displacement = program.observable.ends_with(".displacement");
-  if (is_displacement && prescribes(scenario, Step::Kind::displacement)) {
-    information.notes.push_back(
-        fmt::format("a step prescribes the measured quantity, {}, and tells nothing; expected forces in the program, "
-                    "or y = a force",
-                    program.observable));
-  }
-  if (!is_displacement) {
+  constexpr std::string_view k_displacement = ".displacement";
+  if (program.observable.ends_with(k_displacement)) {
+    const std::string_view contact_class =
+        std::string_view(program.observable).substr(0, program.observable.size() - k_displacement.size());
+    if (const auto steps = displacement_steps(scenario, contact_class); !steps.empty()) {
+      information.notes.push_back(
+          fmt::format("the measured quantity, {}, is prescribed in {}, which tells nothing of the parameters",
+                      program.observable, named(steps)));
+    }
+  } else {
     const DisplacementProgram path(program.scenario, rough);
-    if (const std::vector<std::size_t> replaced = path.replaced(); !replaced.empty()) {
+    if (!path.overrides().empty()) {
       scenario = program.scenario.variants->with(path.overrides());
       information.notes.push_back(fmt::format(
-          "step{} {} count{} as displacements, to where the force or condition leads: a fit follows the measured "
+          "{}: replaced by the displacements to which forces or conditions lead, because a fit follows the measured "
           "displacement",
-          replaced.size() > 1 ? "s" : "", fmt::join(replaced, ", "), replaced.size() > 1 ? "" : "s"));
+          named(path.replaced())));
+    } else if (!path.replaced().empty()) {
+      information.notes.push_back(
+          fmt::format("{}: forces, stresses, and ends by a condition count as measured, too; for errors of a fit along "
+                      "a measured displacement or strain, prescribe that",
+                      named(path.replaced())));
     }
   }
   scenario.sensitivities = program.scenario.sensitivities;
@@ -224,7 +239,6 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
   const Run run = run_scenario(scenario);
   information.noise = run.integrator.is_direct() ? k_direct_error : k_integrated_error;
   const Table& history = run.record.history;
-  const Instants instants(plan, history);
   const std::size_t time = *history.find("time");
   const std::size_t side = *history.find("row");
   const std::size_t y = *history.find(program.observable);
@@ -240,7 +254,7 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
       derivatives[static_cast<Eigen::Index>(k)] = history.at(row, columns[k]);
     }
     const double value = history.at(row, y);
-    if (!derivatives.allFinite() || !std::isfinite(value) || !instants.is_fixed(row)) {
+    if (!derivatives.allFinite() || !std::isfinite(value) || !has_fixed_instant(plan, history, row)) {
       ++information.left_out;
       continue;
     }

@@ -291,6 +291,28 @@ TEST_F(PlanTest, GoesAlongTheDisplacementWhateverTheProgramPrescribes) {
   }
 }
 
+TEST_F(PlanTest, GoesAlongTheDisplacementOfWallsThatShareStepsOrAClass) {
+  const std::string head = std::string(k_mdr).substr(0, std::string(k_mdr).find("[loading]"));
+  const std::string steps =
+      "steps = [{ force = \"20 kN\", duration = 1 }, { hold = true, duration = 1 }, "
+      "{ force = 0, duration = 1 }, { force = \"10 kN\", duration = 1 }]\n";
+  const std::string walls = "[loading]\nconfiguration = \"walls\"\n";
+  const std::string one = "[[loading.wall]]\nname = \"axial\"\nnormal = [0, 0, 1]\n";
+  const std::string other = "[[loading.wall]]\nname = \"b\"\nnormal = [0, 0, -1]\n";
+  std::vector<double> errors;
+  for (const std::string& loading : {"[loading]\nconfiguration = \"simple\"\n" + steps, walls + steps + one + other,
+                                     walls + one + steps + other + steps}) {
+    const IdentifyResult result = identify(read(head + loading, std::string(k_mdr_free) + k_mdr_program));
+    EXPECT_NE(result.programs.front().notes.front().find("steps 1, 2, 3, 4: replaced by the displacements"),
+              std::string::npos)
+        << result.programs.front().notes.front();
+    EXPECT_EQ(result.programs.front().left_out, 0U) << "the contact is lost as the third step ends";
+    errors.push_back(standard_error(result, 0));
+  }
+  EXPECT_NEAR(errors[1], errors[0], 1e-6 * errors[0]);
+  EXPECT_NEAR(errors[2], errors[0], 1e-6 * errors[0]);
+}
+
 TEST_F(PlanTest, SaysThatAPrescribedQuantityTellsNothing) {
   const std::string plan = std::string(k_mdr_free) + replaced(k_mdr_program, "noise = { absolute = \"30 N\" }",
                                                               "y = \"displacement\"\nnoise = { absolute = \"1 um\" }");
