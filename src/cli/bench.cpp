@@ -103,6 +103,12 @@ int bench(const BenchOptions& named) {
   prepare_folder(options.output);
   const fs::path output = options.output;
   for (const char* name : {"bench.csv", "bench.md"}) expect_own_file(output / name, output / "bench.csv");
+  for (const CheckedScenario& scenario : scenarios) {
+    for (const char* extension : {".svg", ".dat", ".gp"}) {
+      const fs::path figure = output / fmt::format("bench-{}.svg", scenario.name);
+      expect_own_file(fs::path(figure).replace_extension(extension), fs::path(figure).replace_extension(".gp"));
+    }
+  }
   std::vector<BenchScene> scenes;
   std::vector<BenchProfile> profiles;
   {

@@ -23,14 +23,15 @@ constexpr const char* k_installed = MONOGRAIN_DATA_FROM_PROGRAM;
 /// File beside a program in a build tree that contains the path of the checkout.
 constexpr const char* k_checkout_file = "monograin-data";
 
-/// True for a file, and for a folder with a file of the program's kinds: a folder of a user may be called plots, too.
-/// What cannot be read counts as missing.
+/// True for a file, and for a folder with definitions, scenarios or curves: a folder of a user may be called plots,
+/// too. What cannot be read counts as missing.
 bool is_there(const fs::path& part) {
   std::error_code error;
   if (!fs::is_directory(part, error)) return fs::exists(part, error);
   const fs::directory_iterator files(part, error);
-  return !error && std::any_of(begin(files), end(files), [](const fs::directory_entry& entry) {
-    return entry.path().extension() == ".toml" || entry.path().extension() == ".csv";
+  const char* extension = part.filename() == "curves" ? ".csv" : ".toml";
+  return !error && std::any_of(begin(files), end(files), [extension](const fs::directory_entry& entry) {
+    return entry.path().extension() == extension;
   });
 }
 

@@ -63,20 +63,26 @@ std::string names_of(const std::vector<const CLI::App*>& commands) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Value of an option as it was typed; the parser may have changed its own copy.
-std::string value_on_line(const CLI::Option& option, std::span<char* const> words) {
-  std::string value = fmt::format("{}", fmt::join(option.results(), " "));
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    const std::string_view word = words[k];
+/// Values of an option as they were typed; the parser may have changed its own copies.
+std::string values_on_line(const CLI::Option& option, std::span<char* const> words) {
+  std::size_t left = std::max<std::size_t>(1, option.results().size());
+  std::vector<std::string_view> values;
+  bool is_its = false;
+  for (const std::string_view word : words) {
     const std::size_t equals = word.find('=');
-    const std::string_view name = word.substr(0, equals);
-    if (!name.starts_with('-') || !option.check_name(std::string(name))) continue;
-    if (equals != std::string_view::npos)
-      value = word.substr(equals + 1);
-    else if (k + 1 < words.size())
-      value = words[k + 1];
+    if (word.starts_with('-') && option.check_name(std::string(word.substr(0, equals)))) {
+      is_its = true;
+      if (equals == std::string_view::npos) continue;
+      values.push_back(word.substr(equals + 1));
+    } else if (is_its) {
+      values.push_back(word);
+    } else {
+      continue;
+    }
+    if (--left == 0) break;
   }
-  return value;
+  return values.empty() ? fmt::format("{}", fmt::join(option.results(), " "))
+                        : fmt::format("{}", fmt::join(values, " "));
 }
 
 /// Message that names the option at fault and what it expects; empty if no option is at fault.
@@ -104,7 +110,7 @@ std::string fault_of_option(const CLI::ParseError& error, const CLI::App& comman
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && option->count() <= 1) {
       return fmt::format("{} needs a value; expected: {}", name, option->get_description());
     }
-    const std::string value = shown(value_on_line(*option, words));
+    const std::string value = shown(values_on_line(*option, words));
     if (text.find("does not exist") != std::string::npos)
       return fmt::format("{} = {}: there is no such file", name, value);
     return fmt::format("{} = {} is not what it takes; expected: {}", name, value, option->get_description());

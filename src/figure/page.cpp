@@ -216,6 +216,8 @@ void write_whole(const fs::path& file, const std::string& text) {
   }
 }
 
+void expect_own_figure(const fs::path& figure) { expect_own_file(figure, fs::path(figure).replace_extension(".gp")); }
+
 FigureFiles::FigureFiles(fs::path output)
     : figure_(std::move(output)),
       script_(fs::path(figure_).replace_extension(".gp")),
@@ -231,8 +233,8 @@ FigureFiles::FigureFiles(fs::path output)
 
 void FigureFiles::write(const std::string& data, const std::string& script) const {
   make_folder(figure_.parent_path());
+  write_whole(script_, script);  // first, because it tells whose the other files are
   write_whole(data_, data);
-  write_whole(script_, script);
   run_gnuplot(gnuplot_, script_, figure_);
 }
 

@@ -46,6 +46,10 @@ inline constexpr const char* k_page_foot = "unset multiplot\nunset output\n";
 /// Writes a file; if this fails, an older file stays as it is. @throws FigureError with the name of the file
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
+/// Refuses to replace a figure that the program has not drawn: no script of the program stands beside it.
+/// @throws std::runtime_error for a figure of the user
+void expect_own_figure(const std::filesystem::path& figure);
+
 /// A figure with its script and its data in files beside it: the same name with the endings .gp and .dat.
 class FigureFiles {
  public:

@@ -48,7 +48,9 @@ bool has_thousands(std::string_view digits, char decimal) {
   const std::string_view whole = digits.substr(0, end);
   const char mark = decimal == '.' ? ',' : '.';
   const std::size_t first = whole.find(mark);
-  if (first == std::string_view::npos || first == 0 || first > 3 || whole.size() % 4 != first % 4) return false;
+  if (first == std::string_view::npos || first == 0 || first > 3 || whole[0] == '0' || whole.size() % 4 != first % 4) {
+    return false;
+  }
   for (std::size_t k = 0; k < whole.size(); ++k) {
     const bool is_mark = k >= first && (k - first) % 4 == 0;
     if (is_mark ? whole[k] != mark : whole[k] < '0' || whole[k] > '9') return false;

@@ -24,9 +24,8 @@ struct Cell {
 [[nodiscard]] std::vector<Cell> cells_of(std::string_view line, char separator = ',');
 
 /// Parses a text that is a finite number as a whole, whatever the locale; none otherwise.
-/// @param decimal  '.' or ','. The other one may mark thousands: "1.100,5", "1.250.000"; it is refused in "1.100",
-/// which
-///                 may mean 1.1.
+/// @param decimal  '.' or ','. The other one may mark thousands: "1.100,5", "1.250.000"; "1.100" may mean 1.1 and is
+///                 refused.
 [[nodiscard]] std::optional<double> number_in(std::string_view text, char decimal = '.') noexcept;
 
 /// The text without a byte order mark at its beginning.

@@ -30,6 +30,10 @@ std::string advice_for(std::string_view text, char decimal) {
   if (text.find(other) == std::string_view::npos) return {};
   if (text.find(decimal) != std::string_view::npos)
     return "; expected no thousands separators, or groups of three digits";
+  const std::size_t mark = text.find(other);
+  if (text.size() == mark + 4 && mark > 0 && mark < 4 && number_in(text, other)) {
+    return fmt::format("; '{}' may mark thousands or decimals; expected such numbers without it", other);
+  }
   if (number_in(text, other)) return fmt::format("; the decimal sign of the rows above is '{}'", decimal);
   return {};
 }

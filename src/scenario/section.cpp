@@ -317,7 +317,11 @@ void Section::expect_like_units(std::initializer_list<std::string_view> keys) {
     const auto text = node.value<std::string>();
     return text ? number_in(trimmed(*text)) : as_number(node);
   };
-  const auto with_unit = std::ranges::find_if(values, [&](const auto& value) { return !number_of(*value.second); });
+  const auto has_unit = [&](const auto& value) {
+    const auto text = value.second->template value<std::string>();
+    return text && !number_of(*value.second) && begins_a_number(trimmed(*text));
+  };
+  const auto with_unit = std::ranges::find_if(values, has_unit);
   if (with_unit == values.end()) return;
   for (const auto& [key, node] : values) {
     if (number_of(*node).value_or(0.0) == 0.0) continue;

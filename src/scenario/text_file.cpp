@@ -123,8 +123,8 @@ void expect_own_file(const fs::path& file, const fs::path& witness) {
   const std::string text = read_text_file(witness, k_longest).text;
   if (std::ranges::any_of(k_own, [&](std::string_view words) { return text.starts_with(words); })) return;
   throw std::runtime_error(
-      fmt::format("{}: is none that monograin has written, and would be replaced; move it away, or choose "
-                  "another place with -o",
+      fmt::format("{}: monograin has not written this file and would replace it; move it away, or choose another "
+                  "place with -o",
                   file.string()));
 }
 

@@ -55,8 +55,7 @@ using TextSink = std::function<void(std::string_view part)>;
 void write_text_file(const std::filesystem::path& file, const std::function<void(const TextSink&)>& produce);
 
 /// Refuses to replace a file that the program has not written.
-/// @param witness  the file itself, or one that the program writes beside it: it tells whose the file is by its first
-///                 line
+/// @param witness  the file itself, or one that the program writes beside it, whose first line shows who wrote it
 /// @throws std::runtime_error if the file exists, and the witness is not the program's or does not exist
 void expect_own_file(const std::filesystem::path& file, const std::filesystem::path& witness);
 

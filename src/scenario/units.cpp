@@ -80,13 +80,6 @@ const std::array<DimensionInfo, 11> k_dimensions{{
     {Dimension::stress_rate, "a stress rate", "Pa/s", "\"1 MPa/s\"", "", 1e-24, 1e33, k_stress_rates},
 }};
 
-bool begins_a_number(std::string_view text) {
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  if (!text.empty() && (text.front() == '+' || text.front() == '-')) text.remove_prefix(1);
-  if (!text.empty() && text.front() == '.') text.remove_prefix(1);
-  return !text.empty() && is_digit(text.front());
-}
-
 struct LeadingNumber {
   double value = 1.0;
   bool is_there = false;
@@ -123,10 +116,9 @@ std::string unknown_unit(std::string_view symbol, const DimensionInfo& info) {
   std::vector<std::string_view> known;
   for (const Unit& unit : info.units) known.push_back(unit.symbol);
   const auto lower = [](unsigned char c) { return std::tolower(c); };
-  const auto differs_in_case = std::ranges::find_if(
+  const auto other_case = std::ranges::find_if(
       known, [&](std::string_view unit) { return std::ranges::equal(unit, symbol, {}, lower, lower); });
-  const std::string hint = differs_in_case != known.end() ? fmt::format("; did you mean '{}'?", *differs_in_case)
-                                                          : did_you_mean(symbol, known);
+  const std::string hint = other_case != known.end() ? fmt::format("; did you mean '{}'?", *other_case) : std::string();
   return with_expectation(fmt::format("unknown unit '{}'", shown(symbol)), info) + hint;
 }
 
@@ -139,6 +131,13 @@ const DimensionInfo& dimension_info(Dimension dimension) noexcept {
 bool is_unit_of(std::string_view text, Dimension dimension) noexcept {
   const auto& units = dimension_info(dimension).units;
   return std::ranges::find(units, text, &Unit::symbol) != units.end();
+}
+
+bool begins_a_number(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (!text.empty() && (text.front() == '+' || text.front() == '-')) text.remove_prefix(1);
+  if (!text.empty() && text.front() == '.') text.remove_prefix(1);
+  return !text.empty() && is_digit(text.front());
 }
 
 Range plausible_range(Dimension dimension, Range range) noexcept {

@@ -40,6 +40,9 @@ struct DimensionInfo {
 /// "a length from 1e-12 m to 1e+06 m"
 [[nodiscard]] std::string describe(Dimension dimension, const Range& range);
 
+/// True if a text begins with a decimal number, with or without a sign.
+[[nodiscard]] bool begins_a_number(std::string_view text);
+
 struct ParsedQuantity {
   std::optional<double> value;  ///< SI; none if the text is not a quantity of that dimension
   std::string problem;          ///< without a value: the fault, and what is expected

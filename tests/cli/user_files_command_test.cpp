@@ -615,7 +615,7 @@ TEST_F(UserFiles, AreNotReplacedByFilesThatNobodyNamed) {
     write_text(path(file), "mine\n");
     const Outcome outcome = monograin(command);
     EXPECT_EQ(outcome.code, 2) << command;
-    EXPECT_NE(outcome.err.find(std::string(file) + ": is none that monograin has written"), std::string::npos)
+    EXPECT_NE(outcome.err.find(std::string(file) + ": monograin has not written this file"), std::string::npos)
         << outcome.err;
     EXPECT_EQ(text(file), "mine\n") << command;
     fs::remove(path(file));

@@ -258,7 +258,9 @@ std::vector<fs::path> write_atlas(const std::vector<AtlasFigure>& figures, const
   std::vector<fs::path> written;
   std::vector<figure::FigureFiles> files;
   for (const AtlasFigure& made : figures) {
-    if (!made.chart.panels.empty()) files.emplace_back(folder / fmt::format("{}.{}", made.name, made.format));
+    if (made.chart.panels.empty()) continue;
+    files.emplace_back(folder / fmt::format("{}.{}", made.name, made.format));
+    figure::expect_own_figure(files.back().figure());
   }
   const auto table_of = [&folder](const AtlasFigure& made) { return folder / (made.name + ".csv"); };
   for (const AtlasFigure& made : figures) {

@@ -94,7 +94,6 @@ std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, 
   };
   const Keys keys = bounds_keys(number, {kind_of_bound("from"), kind_of_bound("to"), kind_of_bound("start")});
   Section bounds(reading, origin, keys);
-  bounds.expect_like_units({"from", "to", "start"});
   const auto bound = [&](std::string_view key) {
     return kind_of_bound(key) == KeySpec::Kind::text ? compliance_in(reading, bounds, key).value : bounds.number(key);
   };
@@ -112,6 +111,7 @@ std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, 
   parameter.lower = *from;
   parameter.upper = *to;
   parameter.start = bound("start");
+  bounds.expect_like_units({"from", "to", "start"});
   if (parameter.start && (*parameter.start < *from || *parameter.start > *to)) {
     reading.faults.add(bounds.value_place("start"),
                        fmt::format("start = {} is not between the bounds", shown(*origin.table->get("start"))));

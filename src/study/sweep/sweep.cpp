@@ -16,6 +16,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "figure/page.hpp"
 #include "history/run.hpp"
 #include "history/staged_folder.hpp"
 #include "numerics/parallel.hpp"
@@ -188,8 +189,15 @@ void prepare(const fs::path& folder) {
     throw std::runtime_error(
         fmt::format("{}: holds the result of another command; choose another folder with -o", folder.string()));
   }
-  for (const char* name : {k_results, k_bands_file, k_sensitivities_file})
+  for (const char* name : {k_results, k_bands_file, k_sensitivities_file}) {
     expect_own_file(folder / name, folder / name);
+    figure::expect_own_figure((folder / name).replace_extension(".svg"));
+  }
+  if (fs::is_directory(folder / "histories")) {
+    for (const auto& entry : fs::directory_iterator(folder / "histories")) {
+      if (entry.path().extension() == ".csv") expect_own_file(entry.path(), entry.path());
+    }
+  }
   prepare_folder(folder);
 }
 

@@ -366,7 +366,10 @@ std::vector<fs::path> draw_bench(const std::vector<BenchScene>& scenes, const st
                       }));
   std::erase_if(charts, [](const auto& named) { return named.second.panels.empty(); });
   std::vector<figure::FigureFiles> files;
-  for (const auto& [name, chart] : charts) files.emplace_back(folder / (name + ".svg"));
+  for (const auto& [name, chart] : charts) {
+    files.emplace_back(folder / (name + ".svg"));
+    figure::expect_own_figure(files.back().figure());
+  }
   std::vector<fs::path> written;
   for (std::size_t k = 0; k < charts.size(); ++k) {
     const figure::Chart& chart = charts[k].second;
