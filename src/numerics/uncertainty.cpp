@@ -88,6 +88,26 @@ bool has_influence(const LeastSquaresProblem& problem, const LeastSquaresSolutio
   return jacobian.col(static_cast<Eigen::Index>(parameter)).norm() > error;
 }
 
+/// Fills in the covariances of the parameters between their bounds.
+/// @param interior  their indices
+/// @param inverse   (J^T J)^-1 J^T D^2 J (J^T J)^-1 of scaled columns
+/// @param of_data   the same with J^T D^2 J of the data alone; empty: all rows are data
+void fill_in(Uncertainty& result, const std::vector<Eigen::Index>& interior, const NormalInverse& normal,
+             const Eigen::MatrixXd& inverse, const Eigen::MatrixXd& of_data) {
+  const double variance = result.standard_deviation * result.standard_deviation;
+  for (std::size_t i = 0; i < interior.size(); ++i) {
+    for (std::size_t j = 0; j < interior.size(); ++j) {
+      if (!normal.is_determined[i] || !normal.is_determined[j]) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      const auto column = static_cast<Eigen::Index>(j);
+      const double unit = variance / (normal.norms[row] * normal.norms[column]);
+      result.covariance(interior[i], interior[j]) = unit * inverse(row, column);
+      result.cost_covariance(interior[i], interior[j]) = unit * normal.inverse(row, column);
+      if (of_data.size() > 0) result.data_covariance(interior[i], interior[j]) = unit * of_data(row, column);
+    }
+  }
+}
+
 }  // namespace
 
 double Uncertainty::standard_error(std::size_t parameter) const {
@@ -207,18 +227,7 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
     of_data = normal.inverse * noise_of_normal(normal.scaled.topRows(rows), result.deviations) * normal.inverse;
     result.data_covariance = result.covariance;
   }
-  const double variance = result.standard_deviation * result.standard_deviation;
-  for (std::size_t i = 0; i < interior.size(); ++i) {
-    for (std::size_t j = 0; j < interior.size(); ++j) {
-      if (!normal.is_determined[i] || !normal.is_determined[j]) continue;
-      const auto row = static_cast<Eigen::Index>(i);
-      const auto column = static_cast<Eigen::Index>(j);
-      const double unit = variance / (normal.norms[row] * normal.norms[column]);
-      result.covariance(interior[i], interior[j]) = unit * inverse(row, column);
-      result.cost_covariance(interior[i], interior[j]) = unit * normal.inverse(row, column);
-      if (of_data.size() > 0) result.data_covariance(interior[i], interior[j]) = unit * of_data(row, column);
-    }
-  }
+  fill_in(result, interior, normal, inverse, of_data);
   return result;
 }
 
