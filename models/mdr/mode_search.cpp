@@ -88,7 +88,10 @@ void ModeSearch::begin(const Particle& particle) {
   validity_.reset();
 }
 
-void ModeSearch::close_with(std::size_t i, std::vector<Event>& log) { balance_touch(p_, i, true, log); }
+void ModeSearch::close_with(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log) {
+  carry_to_support(p_, xi, y, log);
+  balance_touch(p_, i, true, log);
+}
 
 // --- guards that have fired
 
@@ -339,7 +342,7 @@ bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log
     separate(*weakest_contact(p_), y, log);
   }
   // A wall that a force presses from the start fires no guard, so the walls that balance it close here.
-  for (const std::size_t i : just_loaded) balance_touch(p_, i, true, made_);
+  for (const std::size_t i : just_loaded) close_with(i, xi, y, made_);
   // If a contact has pulled off, the others find a new balance.
   if (!has_jumped_ && p_.law().adheres()) balance_anew(xi, y, log);
   if (!has_jumped_ && !p_.law().adheres()) move_walls(p_, xi, y);

@@ -31,8 +31,9 @@ class ModeSearch {
   /// @return the reason to stop, if the equations end here
   std::optional<DomainEnd> apply(std::span<const Guard> fired, double xi, std::span<double> y, ContactCaps& caps,
                                  std::vector<Event>& log);
-  /// Closes the nearest walls together with contact i, which a force begins to press.
-  void close_with(std::size_t i, std::vector<Event>& log);
+  /// Closes the nearest walls together with contact i, which a force begins to press. A loose particle moves to walls
+  /// that support that force.
+  void close_with(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log);
   /// Opens the contacts of the walls that a prescribed force pulls away, along the softest direction of the centre.
   /// @return false if there are none
   bool let_go_of_pulling_walls(double xi, std::span<double> y, std::vector<Event>& log);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "mdr/equilibrium.hpp"
 #include "mdr/guards.hpp"
 #include "mdr/rates.hpp"
 #include "mdr/resolution.hpp"
@@ -84,6 +85,31 @@ std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<c
 double distance_to_touch(const Particle& p, std::size_t i) {
   const int kind = p.branch(i).regime == Regime::separated ? k_dent_touched : k_made;
   return std::abs(contact_guard(p, kind, i, 0.0, p.contact(i).overlap));
+}
+
+/// Event of a wall that meets the fresh particle or its dent.
+const char* touch_event(const Particle& p, std::size_t i) {
+  return p.branch(i).regime == Regime::separated ? "dent-touched" : "contact-made";
+}
+
+/// An open contact that the centre meets on a path, and the distance to it, over the length of the path's vector.
+struct Meeting {
+  std::size_t contact = 0;
+  double distance = 0.0;
+};
+
+/// The first wall under displacement control that the centre meets; none if no such wall is in the path.
+std::optional<Meeting> next_on_path(const Particle& p, const CentreVector& path) {
+  std::optional<Meeting> next;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const ContactBranch& branch = p.branch(i);
+    if (branch.touches() || p.is_loaded(i) || !p.centre().acts(i)) continue;
+    const double approach = p.centre().direction(i).dot(path);
+    if (!(approach > k_no_direction * path.norm())) continue;
+    const double gap = branch.touching_overlap(p.law(), p.at().r) - p.contact(i).overlap;
+    if (!next || gap / approach < next->distance) next = Meeting{i, gap / approach};
+  }
+  return next;
 }
 
 /// True if contacts that touch, or are within k_together of it, can balance a push of contact i on the free centre.
@@ -251,6 +277,44 @@ void check_support(Particle& p) {
   if (left > std::max(k_no_force * largest, p.force_round_off())) throw DomainError(Limit::centre_driven_away);
 }
 
+void carry_to_support(Particle& p, double xi, std::span<double> y, std::vector<Event>& log) {
+  if (!p.centre().is_free() || xi > 0.0) return;
+  move_walls(p, xi, y);
+  p.evaluate(xi, y);
+  const CentreVector push = prescribed_push(p, 1.0);
+  if (push.norm() <= k_no_force * largest_prescribed_force(p)) return;
+  const double round_off = p.force_round_off();
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.branch(i).touches() && std::abs(p.contact(i).contact.force) > round_off) return;
+  }
+  const int count = p.centre().count();
+  CentreMatrix along = CentreMatrix::Zero();
+  along.diagonal().head(count).setOnes();
+  for (std::size_t round = 0; round <= p.size(); ++round) {
+    std::vector<CentreVector> normals;
+    std::vector<IdleWall> walls;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (!p.branch(i).touches() || p.is_loaded(i) || !p.centre().acts(i)) continue;
+      normals.push_back(p.centre().direction(i).normalized());
+      walls.push_back({i});
+    }
+    if (in_reaction_cone(push, normals)) return;
+    CentreVector path = -push.normalized();
+    if (!push_out(p, walls, along, path)) return;
+    const std::optional<Meeting> next = next_on_path(p, path);
+    if (!next) return;
+    set_centre(y, count, centre_of(y, count) + next->distance * path);
+    p.evaluate(xi, y);
+    for (const IdleWall& wall : walls) {
+      if (!(p.centre().direction(wall.contact).dot(path) < -k_no_direction * path.norm())) continue;
+      p.lose(wall.contact);
+      log.push_back({"contact-lost", static_cast<int>(wall.contact)});
+    }
+    log.push_back({touch_event(p, next->contact), static_cast<int>(next->contact)});
+    p.set_branch(next->contact, p.branch(next->contact).made());
+  }
+}
+
 void balance_touch(Particle& p, std::size_t i, bool is_made, std::vector<Event>& log) {
   if (!p.centre().acts(i) || p.law().adheres()) return;
   // Walls that cannot balance contact i do not close with it, however near they are.
@@ -258,13 +322,12 @@ void balance_touch(Particle& p, std::size_t i, bool is_made, std::vector<Event>&
   while (!is_made || !is_supported(p, i)) {
     const std::optional<std::size_t> next = nearest_partner(p, i, is_made);
     if (!next) return;
-    const bool is_dent = p.branch(*next).regime == Regime::separated;
+    log.push_back({is_made ? touch_event(p, *next) : "contact-lost", static_cast<int>(*next)});
     if (is_made) {
       p.set_branch(*next, p.branch(*next).made());
     } else {
       p.lose(*next);
     }
-    log.push_back({!is_made ? "contact-lost" : is_dent ? "dent-touched" : "contact-made", static_cast<int>(*next)});
   }
 }
 

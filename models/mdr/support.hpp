@@ -25,6 +25,13 @@ namespace monograin::mdr {
 /// in which no touching wall under displacement control constrains the centre
 void check_support(Particle& p);
 
+/// Moves a loose particle with the walls whose forces begin to press it, to walls that support these forces. No force
+/// resists the motion, which therefore takes no time. On its path the centre slides along walls that it touches.
+/// Does nothing if a contact bears, or no wall is in the path. /// Forces begin with a step; at a later xi it does
+/// nothing.
+/// @param y  receives the centre
+void carry_to_support(Particle& p, double xi, std::span<double> y, std::vector<Event>& log);
+
 /// Closes or opens the contacts that close or open together with contact i, because on a free centre only other
 /// contacts balance it. When contact i closes, the nearest walls close until they support it, if they can. When contact
 /// i opens, those contacts open that the remaining ones do not support. Does nothing where contacts adhere.
