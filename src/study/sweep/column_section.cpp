@@ -10,14 +10,22 @@
 #include "scene/scene.hpp"
 
 namespace monograin::sweep {
+namespace {
+
+constexpr std::size_t k_place = 4;  ///< length of "end." and "max."
+
+/// True for a column of the results that is a value of a history.
+bool is_of_history(std::string_view name) { return name.starts_with("end.") || name.starts_with("max."); }
+
+}  // namespace
 
 std::vector<PlacedColumn> columns_of_results(Reading& reading, const Section& root) {
   std::vector<PlacedColumn> columns;
   const std::vector<std::string> texts = root.texts("columns");
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const SourceLocation where = root.value_place("columns", i);
-    if (texts[i].starts_with("end.") || texts[i].starts_with("max.")) {
-      columns.push_back({texts[i].substr(4), where, texts[i].starts_with("end.")});
+    if (is_of_history(texts[i])) {
+      columns.push_back({texts[i].substr(k_place), where, texts[i].starts_with("end.")});
     } else {
       reading.faults.add(where, fmt::format("'{}': expected end.COLUMN, the value at the end of a run, or max.COLUMN, "
                                             "its largest, for example max.axial.force",
@@ -33,7 +41,8 @@ void add_formula_fault(FaultList& faults, SourceLocation where, const std::strin
   faults.add(where, fmt::format("\"{}\": {}{}", shown(formula), error.what(), advice));
 }
 
-void check_results(Reading& reading, const Section& root) {
+std::vector<PlacedColumn> columns_of_formulas(Reading& reading, const Section& root) {
+  std::vector<PlacedColumn> needed;
   const std::vector<std::string> columns = root.texts("columns");
   const std::vector<std::string> texts = root.texts("results");
   for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -41,6 +50,7 @@ void check_results(Reading& reading, const Section& root) {
     try {
       const Expression formula(texts[i]);
       for (const std::string_view name : formula.names()) {
+        if (is_of_history(name)) needed.push_back({std::string(name.substr(k_place)), where});
         if (columns.empty() || std::ranges::find(columns, name) != columns.end()) continue;
         reading.faults.add(where, fmt::format("\"{}\": '{}' is not in columns, which leaves out all others",
                                               shown(texts[i]), shown(name)));
@@ -49,6 +59,7 @@ void check_results(Reading& reading, const Section& root) {
       add_formula_fault(reading.faults, where, texts[i], error);
     }
   }
+  return needed;
 }
 
 void check_columns(std::span<const PlacedColumn> columns, const CheckedScenario& scenario, FaultList& faults) {

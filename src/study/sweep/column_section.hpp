@@ -27,7 +27,8 @@ void add_formula_fault(FaultList& faults, SourceLocation where, const std::strin
                        const ExpressionError& error, const std::string& advice = {});
 
 /// Checks that the formulas in `results` can be read, and name no column that `columns` leaves out.
-void check_results(Reading& reading, const Section& root);
+/// @return the columns of the histories that the formulas need
+[[nodiscard]] std::vector<PlacedColumn> columns_of_formulas(Reading& reading, const Section& root);
 
 /// Checks that histories of a scenario have the columns, so that a sweep of long runs does not end with that fault.
 void check_columns(std::span<const PlacedColumn> columns, const CheckedScenario& scenario, FaultList& faults);

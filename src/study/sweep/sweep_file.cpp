@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -68,7 +69,7 @@ class SweepReader {
     if (!root.text("calibration").empty()) read_calibrated(root);
     read_constraints(root);
     columns_ = sweep::columns_of_results(reading_, root);
-    sweep::check_results(reading_, root);
+    std::ranges::move(sweep::columns_of_formulas(reading_, root), std::back_inserter(columns_));
     if (root.has("bands")) bands_ = sweep::bands_in(reading_, root);
     if (design_ == "table") {
       read_table(root);

@@ -433,6 +433,10 @@ TEST_F(SweepFiles, FaultsOfColumnsAreAtTheirPlaces) {
   ASSERT_EQ(unknown.size(), 2U);
   EXPECT_TRUE(unknown[0].starts_with("sweep.toml:2:24: 'axial.forse' is no column of the histories")) << unknown[0];
   EXPECT_TRUE(unknown[1].starts_with("sweep.toml:2:43: 'axial.regime' is no column of the histories")) << unknown[1];
+  const auto formula = faults_of(head + "design = \"saltelli\"\nsamples = 4\nresults = [\"end.wrok / 2\"]\n" + vary);
+  ASSERT_EQ(formula.size(), 1U);
+  EXPECT_TRUE(formula[0].starts_with("sweep.toml:4:12: 'wrok' is no column of the histories")) << formula[0];
+  EXPECT_TRUE(formula[0].ends_with("did you mean 'work'?")) << formula[0];
   EXPECT_EQ(faults_of(head +
                       "design = \"saltelli\"\nsamples = 4\ncolumns = [\"end.work\"]\n"
                       "results = [\"end.work + max.axial.force\"]\n" +
