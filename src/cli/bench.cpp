@@ -11,6 +11,7 @@
 #include "cli/data_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/terminal.hpp"
+#include "figure/page.hpp"
 #include "history/staged_folder.hpp"
 #include "scenario/integrators.hpp"
 #include "scenario/text_file.hpp"
@@ -104,10 +105,7 @@ int bench(const BenchOptions& named) {
   const fs::path output = options.output;
   for (const char* name : {"bench.csv", "bench.md"}) expect_own_file(output / name, output / "bench.csv");
   for (const CheckedScenario& scenario : scenarios) {
-    for (const char* extension : {".svg", ".dat", ".gp"}) {
-      const fs::path figure = output / fmt::format("bench-{}.svg", scenario.name);
-      expect_own_file(fs::path(figure).replace_extension(extension), fs::path(figure).replace_extension(".gp"));
-    }
+    figure::expect_own_figure(output / fmt::format("bench-{}.svg", scenario.name));
   }
   std::vector<BenchScene> scenes;
   std::vector<BenchProfile> profiles;

@@ -216,7 +216,11 @@ void write_whole(const fs::path& file, const std::string& text) {
   }
 }
 
-void expect_own_figure(const fs::path& figure) { expect_own_file(figure, fs::path(figure).replace_extension(".gp")); }
+void expect_own_figure(const fs::path& figure) {
+  const fs::path script = fs::path(figure).replace_extension(".gp");
+  for (const fs::path& file : {figure, script, fs::path(figure).replace_extension(".dat")})
+    expect_own_file(file, script);
+}
 
 FigureFiles::FigureFiles(fs::path output)
     : figure_(std::move(output)),

@@ -15,6 +15,13 @@ namespace {
 
 constexpr double k_share_of_null_vector = 1e-2;  // component of a null vector above which its parameter is undetermined
 
+/// Quantile for the half-width of a two-sided interval: of Student's t; normal for infinite degrees of freedom.
+double quantile_of(double level, double degrees_of_freedom) {
+  const double below = 0.5 * (1.0 + level);
+  return std::isfinite(degrees_of_freedom) ? boost::math::quantile(boost::math::students_t(degrees_of_freedom), below)
+                                           : boost::math::quantile(boost::math::normal(), below);
+}
+
 /// Mean curvature of the loss over the data.
 double mean_curvature(const LeastSquaresProblem& problem, std::span<const double> residuals, std::size_t n) {
   double curvature = 0.0;
@@ -129,12 +136,7 @@ double Uncertainty::correlation(std::size_t first, std::size_t second) const {
 
 double Uncertainty::t_quantile_for(double share) const {
   if (!(share < 1.0)) return t_quantile;
-  const double level_below = 0.5 * (1.0 + level);
-  // Beyond so many degrees of freedom the distribution is normal to four digits.
-  constexpr double k_many = 1e4;
-  const double degrees = static_cast<double>(degrees_of_freedom) / (share * share);
-  return degrees < k_many ? boost::math::quantile(boost::math::students_t(degrees), level_below)
-                          : boost::math::quantile(boost::math::normal(), level_below);
+  return quantile_of(level, static_cast<double>(degrees_of_freedom) / (share * share));
 }
 
 double Uncertainty::t_quantile_of(std::size_t parameter) const {
@@ -184,10 +186,8 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
 
   const bool has_size = known || result.degrees_of_freedom > 0;
   if (has_size) {
-    const double share = 0.5 * (1.0 + level);
-    const auto degrees = static_cast<double>(result.degrees_of_freedom);
-    result.t_quantile = known ? boost::math::quantile(boost::math::normal(), share)
-                              : boost::math::quantile(boost::math::students_t(degrees), share);
+    result.t_quantile = quantile_of(
+        level, known ? std::numeric_limits<double>::infinity() : static_cast<double>(result.degrees_of_freedom));
     result.standard_deviation = known ? *known : deviation_of(problem, solution.residuals, n);
     result.rise = std::pow(result.standard_deviation, 2) * mean_curvature(problem, solution.residuals, n);
   }

@@ -10,7 +10,6 @@
 #include <numbers>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "scenario/words.hpp"
 
@@ -113,12 +112,11 @@ std::string unknown_unit(std::string_view symbol, const DimensionInfo& info) {
   if (symbol.empty()) return with_expectation("the unit is missing", info);
   if (symbol == info.relative) return with_expectation("the initial radius cannot be given in itself", info);
   if (symbol.starts_with(',')) return with_expectation("a decimal comma", info) + ", with a decimal point";
-  std::vector<std::string_view> known;
-  for (const Unit& unit : info.units) known.push_back(unit.symbol);
   const auto lower = [](unsigned char c) { return std::tolower(c); };
   const auto other_case = std::ranges::find_if(
-      known, [&](std::string_view unit) { return std::ranges::equal(unit, symbol, {}, lower, lower); });
-  const std::string hint = other_case != known.end() ? fmt::format("; did you mean '{}'?", *other_case) : std::string();
+      info.units, [&](const Unit& unit) { return std::ranges::equal(unit.symbol, symbol, {}, lower, lower); });
+  const std::string hint =
+      other_case != info.units.end() ? fmt::format("; did you mean '{}'?", other_case->symbol) : std::string();
   return with_expectation(fmt::format("unknown unit '{}'", shown(symbol)), info) + hint;
 }
 

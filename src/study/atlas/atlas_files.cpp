@@ -263,11 +263,13 @@ std::vector<fs::path> write_atlas(const std::vector<AtlasFigure>& figures, const
     figure::expect_own_figure(files.back().figure());
   }
   const auto table_of = [&folder](const AtlasFigure& made) { return folder / (made.name + ".csv"); };
+  std::vector<std::string> texts;
   for (const AtlasFigure& made : figures) {
-    if (tables_text(made).empty()) continue;
+    if (texts.emplace_back(tables_text(made)).empty()) continue;
     for (const char* extension : {".csv", ".md"}) expect_own_file(folder / (made.name + extension), table_of(made));
   }
   auto next = files.begin();
+  auto tables = texts.begin();
   for (const AtlasFigure& made : figures) {
     if (!made.chart.panels.empty()) {
       const figure::FigureFiles& figure = *next++;
@@ -275,10 +277,10 @@ std::vector<fs::path> write_atlas(const std::vector<AtlasFigure>& figures, const
                    figure::chart_script(made.chart, figure.format(), figure.figure_name(), figure.data_name()));
       written.push_back(figure.figure());
     }
-    if (const std::string tables = tables_text(made); !tables.empty()) {
+    if (const std::string& text = *tables++; !text.empty()) {
       fs::create_directories(folder);
       figure::write_whole(table_of(made), csv_text(tables_csv(made)));
-      figure::write_whole(folder / (made.name + ".md"), tables);
+      figure::write_whole(folder / (made.name + ".md"), text);
       written.insert(written.end(), {table_of(made), folder / (made.name + ".md")});
     }
   }

@@ -33,16 +33,6 @@ std::vector<double> measured_instants(double duration, int points) {
   return instants;
 }
 
-/// True if the instant of a row depends on no free number; false where a derivative is undefined.
-bool has_fixed_instant(const ExperimentPlan& plan, const Table& history, std::size_t row) {
-  const double duration = history.at(history.row_count() - 1, *history.find("time"));
-  for (std::size_t k = 0; k < plan.free.size(); ++k) {
-    const std::size_t column = *history.find(derivative_name("time", plan.free[k].key.path));
-    if (!(std::abs(history.at(row, column) * plan.values[k]) <= k_fixed_instant * duration)) return false;
-  }
-  return true;
-}
-
 /// "step 2" or "steps 1, 3".
 std::string named(const std::vector<std::size_t>& steps) {
   return fmt::format("step{} {}", steps.size() > 1 ? "s" : "", fmt::join(steps, ", "));
@@ -243,9 +233,19 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
   const std::size_t side = *history.find("row");
   const std::size_t y = *history.find(program.observable);
   std::vector<std::size_t> columns;
+  std::vector<std::size_t> instants;  // columns of the derivatives of the time
   for (const FreeParameter& parameter : plan.free) {
     columns.push_back(*history.find(derivative_name(program.observable, parameter.key.path)));
+    instants.push_back(*history.find(derivative_name("time", parameter.key.path)));
   }
+  // False where a derivative is undefined.
+  const auto has_fixed_instant = [&](std::size_t row) {
+    const double least = k_fixed_instant * history.at(history.row_count() - 1, time);
+    for (std::size_t k = 0; k < instants.size(); ++k) {
+      if (!(std::abs(history.at(row, instants[k]) * plan.values[k]) <= least)) return false;
+    }
+    return true;
+  };
   std::vector<Eigen::RowVectorXd> rows;
   for (std::size_t row = 0; row < history.row_count(); ++row) {
     if (history.at(row, side) != 0.0 || history.at(row, time) == 0.0) continue;
@@ -254,7 +254,7 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
       derivatives[static_cast<Eigen::Index>(k)] = history.at(row, columns[k]);
     }
     const double value = history.at(row, y);
-    if (!derivatives.allFinite() || !std::isfinite(value) || !has_fixed_instant(plan, history, row)) {
+    if (!derivatives.allFinite() || !std::isfinite(value) || !has_fixed_instant(row)) {
       ++information.left_out;
       continue;
     }
