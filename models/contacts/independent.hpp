@@ -131,7 +131,7 @@ class IndependentContacts final : public HybridSystem {
       if (const auto end = contacts_[i].begin_step(law_, at[i], is_seen(i), log, carried(i, y)))
         throw CannotBegin(*end);
     }
-    if (centre_) centre_->begin_step(contacts_);
+    if (centre_) centre_->begin_step(law_, contacts_, y);
     if (const auto end = find_mode(0.0, y, log, {})) throw CannotBegin(*end);
     has_begun_ = true;
     solve(0.0, y);

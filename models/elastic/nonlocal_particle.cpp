@@ -4,7 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "contacts/centre/obstacles.hpp"
 #include "contacts/side_ahead.hpp"
+#include "elastic/nonlocal_evasion.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
@@ -125,6 +127,29 @@ void Particle::solve(double xi, std::span<double> y) {
   }
   or_pull_that_follows(xi, [&] { search_.solve(contacts_, ramps_, xi, state_, is_own_mode); });
   note(y);
+}
+
+void Particle::carry_to_support(std::span<double> y) {
+  if (!has_free_centre()) return;
+  evaluate(0.0, y);
+  if (std::ranges::any_of(std::span(state_).first(size()), [&](double s) { return s > scales_.touch; })) return;
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  std::vector<contacts::Obstacle> walls;
+  std::vector<char> touches;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Eigen::Vector3d& arm = contacts_.arm(i);
+    if (is_loaded(i)) {
+      push += contacts_.weight(i) * ramps_[i].end * arm;
+      sum += contacts_.weight(i) * std::abs(ramps_[i].end);
+    } else if (arm.norm() > k_same_surroundings) {
+      walls.push_back({i, arm, ramps_[i].start});
+      touches.push_back(state_[i] >= -scales_.touch);
+    }
+  }
+  if (!(push.norm() > k_round_off * sum)) return;
+  if (const auto centre = contacts::carried_to_support(push, walls, touches, contacts_.centre_of(y)))
+    put_centre(contacts_, walls, *centre, y);
 }
 
 void Particle::clear_centre(double xi, std::span<double> y) {

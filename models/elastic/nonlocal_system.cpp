@@ -31,6 +31,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   Particle& p = now_.particle;
   p.take_up(ramps, y);
   p.require_pressing_walls(0.0);
+  p.carry_to_support(y);
   // A force closes a gap at once; everything else is where it was.
   p.solve(0.0, y);
   p.evaluate(0.0, y);

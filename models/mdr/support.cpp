@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "contacts/centre/obstacles.hpp"
 #include "mdr/equilibrium.hpp"
 #include "mdr/guards.hpp"
 #include "mdr/rates.hpp"
@@ -90,26 +91,6 @@ double distance_to_touch(const Particle& p, std::size_t i) {
 /// Event of a wall that meets the fresh particle or its dent.
 const char* touch_event(const Particle& p, std::size_t i) {
   return p.branch(i).regime == Regime::separated ? "dent-touched" : "contact-made";
-}
-
-/// An open contact that the centre meets on a path, and the distance to it, over the length of the path's vector.
-struct Meeting {
-  std::size_t contact = 0;
-  double distance = 0.0;
-};
-
-/// The first wall under displacement control that the centre meets; none if no such wall is in the path.
-std::optional<Meeting> next_on_path(const Particle& p, const CentreVector& path) {
-  std::optional<Meeting> next;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const ContactBranch& branch = p.branch(i);
-    if (branch.touches() || p.is_loaded(i) || !p.centre().acts(i)) continue;
-    const double approach = p.centre().direction(i).dot(path);
-    if (!(approach > k_no_direction * path.norm())) continue;
-    const double gap = branch.touching_overlap(p.law(), p.at().r) - p.contact(i).overlap;
-    if (!next || gap / approach < next->distance) next = Meeting{i, gap / approach};
-  }
-  return next;
 }
 
 /// True if contacts that touch, or are within k_together of it, can balance a push of contact i on the free centre.
@@ -287,31 +268,31 @@ void carry_to_support(Particle& p, double xi, std::span<double> y, std::vector<E
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.branch(i).touches() && std::abs(p.contact(i).contact.force) > round_off) return;
   }
+  std::vector<contacts::Obstacle> walls;
+  std::vector<char> touched;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.is_loaded(i) || !p.centre().acts(i)) continue;
+    const ContactBranch& branch = p.branch(i);
+    walls.push_back({i, p.centre().direction(i), p.contact(i).overlap - branch.touching_overlap(p.law(), p.at().r)});
+    touched.push_back(branch.touches());
+  }
+  // Overlaps are those at the present position of the centre.
+  std::vector<char> touches = touched;
+  const auto moved = contacts::carried_to_support(push, walls, touches, CentreVector::Zero());
+  if (!moved || touches == touched) return;
   const int count = p.centre().count();
-  CentreMatrix along = CentreMatrix::Zero();
-  along.diagonal().head(count).setOnes();
-  for (std::size_t round = 0; round <= p.size(); ++round) {
-    std::vector<CentreVector> normals;
-    std::vector<IdleWall> walls;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      if (!p.branch(i).touches() || p.is_loaded(i) || !p.centre().acts(i)) continue;
-      normals.push_back(p.centre().direction(i).normalized());
-      walls.push_back({i});
+  set_centre(y, count, centre_of(y, count) + *moved);
+  p.evaluate(xi, y);
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const std::size_t i = walls[k].index;
+    if (touches[k] == touched[k]) continue;
+    if (touches[k]) {
+      log.push_back({touch_event(p, i), static_cast<int>(i)});
+      p.set_branch(i, p.branch(i).made());
+    } else {
+      log.push_back({"contact-lost", static_cast<int>(i)});
+      p.lose(i);
     }
-    if (in_reaction_cone(push, normals)) return;
-    CentreVector path = -push.normalized();
-    if (!push_out(p, walls, along, path)) return;
-    const std::optional<Meeting> next = next_on_path(p, path);
-    if (!next) return;
-    set_centre(y, count, centre_of(y, count) + next->distance * path);
-    p.evaluate(xi, y);
-    for (const IdleWall& wall : walls) {
-      if (!(p.centre().direction(wall.contact).dot(path) < -k_no_direction * path.norm())) continue;
-      p.lose(wall.contact);
-      log.push_back({"contact-lost", static_cast<int>(wall.contact)});
-    }
-    log.push_back({touch_event(p, next->contact), static_cast<int>(next->contact)});
-    p.set_branch(next->contact, p.branch(next->contact).made());
   }
 }
 

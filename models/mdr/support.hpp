@@ -27,8 +27,7 @@ void check_support(Particle& p);
 
 /// Moves a loose particle with the walls whose forces begin to press it, to walls that support these forces. No force
 /// resists the motion, which therefore takes no time. On its path the centre slides along walls that it touches.
-/// Does nothing if a contact bears, or no wall is in the path. /// Forces begin with a step; at a later xi it does
-/// nothing.
+/// Does nothing if a contact bears, if no wall is in the path, or at xi > 0: forces begin with a step.
 /// @param y  receives the centre
 void carry_to_support(Particle& p, double xi, std::span<double> y, std::vector<Event>& log);
 

@@ -72,6 +72,8 @@ std::vector<Step> steps(const std::vector<Share>& program, double depth, double 
   return all;
 }
 
+const char* const k_forms[] = {"auto", "cvode-adams", "cvode-bdf", "ida"};
+
 class FreeCentre : public testing::TestWithParam<Particle> {
  protected:
   [[nodiscard]] static TestRun run_in(std::vector<WallSpec> walls, const std::string& centre,
@@ -113,7 +115,7 @@ TEST_P(FreeCentre, FollowsThePairOfWallsThatMoveByHalf) {
   for (const auto& program : k_programs) {
     const TestRun pair = run_pair(steps(program, depth, force));
     ASSERT_EQ(pair.record.status, RunStatus::complete) << pair.record.message;
-    for (const std::string integrator : {"auto", "cvode-adams", "cvode-bdf", "ida"}) {
+    for (const std::string integrator : k_forms) {
       const std::vector<Step> rest(program.size(), hold());
       const TestRun free = run_between(steps(program, 2.0 * depth, force), rest, "equilibrium", integrator);
       ASSERT_EQ(free.record.status, RunStatus::complete) << integrator << ": " << free.record.message;
@@ -198,6 +200,53 @@ TEST_P(FreeCentre, IsDrivenAwayByAForceThatNothingBears) {
   const TestRun driven = run_in({wall("a", {0, 0, 1}, path({depth, 1.2 * depth})), wall("b", {0, 0, -1}),
                                  across("c", -1.0, 0.2), across("d", 1.0, 0.1)},
                                 "equilibrium", "auto");
+  EXPECT_EQ(driven.record.status, RunStatus::stopped);
+  EXPECT_EQ(driven.record.limit, Limit::centre_driven_away) << driven.record.message;
+}
+
+TEST_P(FreeCentre, IsCarriedByAForceAcrossAGapToTheWallInThePath) {
+  const double depth = GetParam().depth;
+  const double gap = 0.4 * depth;
+  const double force = run_pair({ramp(depth)}).last("a.force");
+  const std::vector<Step> program = {force_ramp(0.7 * force), force_ramp(0.3 * force)};
+  const auto behind_a_gap = [&](double size, const std::string& integrator) {
+    return run_in({wall("a", {0.6, 0.0, 0.8}, program), wall("b", {-0.6, 0.0, -0.8}, {}, size)}, "equilibrium",
+                  integrator);
+  };
+  const TestRun touching = behind_a_gap(0.0, "auto");
+  for (const char* const integrator : k_forms) {
+    const TestRun apart = behind_a_gap(gap, integrator);
+    ASSERT_EQ(apart.record.status, RunStatus::complete) << integrator << ": " << apart.record.message;
+    EXPECT_NEAR(apart.time_of("contact-made"), 0.0, 1e-8) << integrator;
+    EXPECT_NEAR(apart.last("a.displacement"), touching.last("a.displacement") + gap, 1e-6 * depth) << integrator;
+    EXPECT_NEAR(apart.last("centre_z"), touching.last("centre_z") - 0.8 * gap, 1e-6 * depth) << integrator;
+    for (const char* const name : {"a.force", "b.force"})
+      EXPECT_NEAR(apart.last(name), 0.3 * force, 1e-6 * force) << integrator << ", " << name;
+  }
+}
+
+TEST_P(FreeCentre, SlidesUnderAForceAlongAWallToTheNextOne) {
+  // Of two oblique walls the nearer one is met first. Both overlaps are the same in the end.
+  const double depth = GetParam().depth;
+  const double force = run_pair({ramp(depth)}).last("a.force");
+  const double half = std::sqrt(0.5);
+  for (const char* const integrator : k_forms) {
+    const TestRun run =
+        run_in({wall("a", {0, 0, 1}, {force_ramp(0.5 * force)}), wall("b", {half, 0, -half}, {}, 0.2 * depth),
+                wall("c", {-half, 0, -half}, {}, 0.6 * depth)},
+               "equilibrium", integrator);
+    ASSERT_EQ(run.record.status, RunStatus::complete) << integrator << ": " << run.record.message;
+    for (const char* const name : {"b.force", "c.force"})
+      EXPECT_NEAR(run.last(name), 0.5 * half * force, 1e-6 * force) << integrator << ", " << name;
+    // Overlaps less gaps: half (x - z) - 0.2 depth, half (-x - z) - 0.6 depth.
+    EXPECT_NEAR(run.last("centre_x"), -0.4 * half * depth, 1e-6 * depth) << integrator;
+  }
+}
+
+TEST_P(FreeCentre, StopsUnderAForceWhereNoWallIsInThePath) {
+  const double force = run_pair({ramp(GetParam().depth)}).last("a.force");
+  const TestRun driven =
+      run_in({wall("a", {0, 0, 1}, {force_ramp(0.5 * force)}), wall("b", {0.1, 0, 1}, {}, 0.1)}, "equilibrium", "auto");
   EXPECT_EQ(driven.record.status, RunStatus::stopped);
   EXPECT_EQ(driven.record.limit, Limit::centre_driven_away) << driven.record.message;
 }

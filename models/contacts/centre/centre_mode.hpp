@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "contacts/centre/free_centre.hpp"
+#include "contacts/centre/obstacles.hpp"
 #include "contacts/guards.hpp"
 
 namespace monograin::contacts {
@@ -56,8 +57,7 @@ class CentreMode {
   /// Writes the position of the centre that balances the forces.
   void move(const Law& law, std::span<const Contact> contacts, double xi, std::span<double> y) {
     if (dimension() == 0) return;
-    const Vector c = centre_.equilibrium(Instant(law, contacts, xi), roles_, rest_, position(y));
-    for (std::size_t k = 0; k < dimension(); ++k) y[slot_ + k] = c[static_cast<Eigen::Index>(k)];
+    write_position(centre_.equilibrium(Instant(law, contacts, xi), roles_, rest_, position(y)), y);
   }
   /// Writes the rates of the centre, with which integrators begin: difference quotients, not singular at first touch.
   void write_rates(const Law& law, std::span<const Contact> contacts, double xi, std::span<const double> y,
@@ -93,13 +93,15 @@ class CentreMode {
 
   // --- the mode
 
-  /// Takes up the ramps of a step, and sets how far ahead the modes of the step are decided.
-  void begin_step(std::span<const Contact> contacts) {
+  /// Takes up the ramps of a step, sets how far ahead the modes of the step are decided, and carries a loose particle
+  /// to the walls that bear forces that begin.
+  void begin_step(const Law& law, std::span<const Contact> contacts, std::span<double> y) {
     fastest_wall_ = 0.0;
     for (const Contact& c : contacts) {
       if (!c.is_force_controlled()) fastest_wall_ = std::max(fastest_wall_, std::abs(c.drive().rate()));
     }
     ahead_ = std::clamp(k_distance_ahead / fastest_wall_, k_least_ahead, k_most_ahead);
+    if (const auto c = support_of_loose_particle(law, contacts, y)) write_position(*c, y);
   }
   /// Decides which walls touch, which contacts bear and which ones turn in the mode that begins, by evaluating a little
   /// ahead. Contacts depend on each other through the centre: the search assumes a mode, evaluates and corrects it, and
@@ -115,7 +117,6 @@ class CentreMode {
     for (std::size_t round = 0; round <= 4 * contacts.size() + 8; ++round) {
       Vector then = rest_;
       centre_.find_roles(Instant(law, contacts, xi), Instant(law, contacts, xi + ahead_), then, roles_);
-      std::optional<Vector> landing;  // where the centre is in the mode that begins, at its first instant
       bool has_changed = false;
       for (std::size_t i = 0; i < contacts.size(); ++i) {
         Contact& c = contacts[i];
@@ -123,11 +124,6 @@ class CentreMode {
         Change change{.now = c.drive().value(xi) + centre_.along(i, rest_) - law.opening(c.branch()),
                       .then = overlap_as_touching(law, contacts, i, xi + ahead_, then),
                       .turning = xi == 0.0 ? "load-reversal" : "retreat"};
-        // A force that no contact bears takes the centre to a wall in no time.
-        if (!c.touches() && change.now < -k_touch && change.then > k_no_change) {
-          if (!landing) landing = centre_.equilibrium(Instant(law, contacts, xi), roles_, rest_, then);
-          change.now = overlap_as_touching(law, contacts, i, xi, *landing);
-        }
         find_touch(law, c, change, is_seen(i), log);
         if (const auto end = find_branch(law, c, change, log, has_changed)) return end;
       }
@@ -234,6 +230,39 @@ class CentreMode {
     Vector c = Vector::Zero();
     for (std::size_t k = 0; k < dimension(); ++k) c[static_cast<Eigen::Index>(k)] = y[slot_ + k];
     return c;
+  }
+  void write_position(const Vector& c, std::span<double> y) const noexcept {
+    for (std::size_t k = 0; k < dimension(); ++k) y[slot_ + k] = c[static_cast<Eigen::Index>(k)];
+  }
+  /// Where a particle that no contact holds comes to rest under the forces that begin with a step: between walls that
+  /// bear them. No force resists the motion, which takes no time.
+  /// @return none if a contact bears already, if no force begins, or if no wall is in the path
+  [[nodiscard]] std::optional<Vector> support_of_loose_particle(const Law& law, std::span<const Contact> contacts,
+                                                                std::span<const double> y) const {
+    const Vector rest = position(y);
+    Vector push = Vector::Zero();
+    double sum = 0.0;
+    std::vector<Obstacle> walls;
+    std::vector<char> touches;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Contact& c = contacts[i];
+      const Vector& arm = centre_.lines().arm(i);
+      if (c.is_force_controlled()) {
+        if (c.prescribed_force(0.0) > 0.0) return std::nullopt;
+        const double force = centre_.count(i) * c.prescribed_force(1.0);
+        push += force * arm;
+        sum += force;
+        continue;
+      }
+      const double overlap = c.drive().start() - law.opening(c.branch());
+      const double now = overlap + centre_.along(i, rest);
+      if (now > k_touch) return std::nullopt;
+      if (!centre_.lines().acts(i)) continue;
+      walls.push_back({i, arm, overlap});
+      touches.push_back(now >= -k_touch);
+    }
+    if (!(push.norm() > k_round_off * sum)) return std::nullopt;
+    return carried_to_support(push, walls, touches, rest);
   }
   /// Overlap of a contact; negative for a gap. The overlap of an idle wall stays zero while the wall pushes the centre:
   /// for that, gives the overlap that it would have if it did not push.

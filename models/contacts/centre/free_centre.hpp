@@ -59,6 +59,9 @@ class FreeCentre {
   explicit FreeCentre(std::span<const ContactClass> classes);
 
   [[nodiscard]] int dimension() const noexcept { return lines_.dimension(); }
+  [[nodiscard]] const CentreLines& lines() const noexcept { return lines_; }
+  /// Number of walls of a class.
+  [[nodiscard]] double count(std::size_t i) const noexcept { return counts_[i]; }
   /// By how much a displacement c of the centre deepens the contacts of a class.
   [[nodiscard]] double along(std::size_t i, const Vector& c) const noexcept { return lines_.arm(i).dot(c); }
   [[nodiscard]] Eigen::Vector3d in_space(const Vector& c) const noexcept { return lines_.in_space(c); }

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace monograin::contacts {
 
@@ -38,5 +40,14 @@ bool clear(std::span<const Obstacle> walls, const Eigen::Matrix3d& along, double
   c = now;
   return true;
 }
+
+/// Carries a loose particle along until walls that it touches can balance a push. It slides along walls on its way.
+/// @param push     sum of the pushing forces, each along the outward normal of its wall; not zero
+/// @param walls    that can bear; their arms are not zero
+/// @param touches  for each of them whether it touches at c; out: at the position found
+/// @return the position of the centre; none if no wall is in the path
+[[nodiscard]] std::optional<Eigen::Vector3d> carried_to_support(const Eigen::Vector3d& push,
+                                                                std::span<const Obstacle> walls,
+                                                                std::vector<char>& touches, Eigen::Vector3d c);
 
 }  // namespace monograin::contacts

@@ -525,35 +525,6 @@ TEST_P(MdrFreeCentreUnderForce, IsPulledOffAtTheTensionThatTheWeakerSideBears) {
   }
 }
 
-TEST_P(MdrFreeCentreUnderForce, IsCarriedAcrossAGapToTheWallInThePath) {
-  const std::vector<double> targets{0.02, 0.01, 0.03};
-  const double gap = 0.01;
-  CheckedScenario apart = against_a_fixed_wall(force_path(targets));
-  apart.loading.walls[1].gap = gap;
-  const TestRun result = run(apart, GetParam());
-  ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
-  EXPECT_EQ(result.time_of("contact-made"), 0.0);
-  const TestRun together = run(against_a_fixed_wall(force_path(targets)), GetParam());
-  EXPECT_NEAR(result.last("z+.displacement"), together.last("z+.displacement") + gap, 1e-6);
-  EXPECT_NEAR(result.last("centre_z"), together.last("centre_z") - gap, 1e-6);
-  for (const char* column : {"z+.force", "z-.force", "z-.overlap", "apparent_radius", "work", "stored_energy"})
-    EXPECT_NEAR(result.last(column), together.last(column), 1e-6) << column;
-}
-
-TEST_P(MdrFreeCentreUnderForce, SlidesAlongAWallToTheNextOne) {
-  // Two oblique walls, of which the nearer one is met first; between them the particle comes to rest as without gaps.
-  const double half = std::sqrt(0.5);
-  CheckedScenario apart = against_a_fixed_wall(force_path({0.02}));
-  apart.loading.walls[1] = wall("a", {half, 0.0, -half}, {}, 0.01);
-  apart.loading.walls.push_back(wall("b", {-half, 0.0, -half}, {}, 0.03));
-  const TestRun result = run(apart, GetParam());
-  ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
-  for (const char* name : {"a", "b"}) EXPECT_NEAR(result.last(name + std::string(".force")), 0.02 * half, 1e-9) << name;
-  EXPECT_NEAR(result.last("a.overlap"), result.last("b.overlap"), 1e-9);
-  // Overlaps are gaps closed by the centre: a: half (x - z) - 0.01, b: half (-x - z) - 0.03.
-  EXPECT_NEAR(result.last("centre_x"), -0.02 * half, 1e-9);
-}
-
 TEST_P(MdrFreeCentreUnderForce, IsCarriedOnWhereAWallHasGoneAway) {
   // Both walls have gone away, and the particle's position between them is undetermined.
   CheckedScenario scenario = against_a_fixed_wall({force_ramp(0.02), ramp(0.0), force_ramp(0.01)});
@@ -564,14 +535,6 @@ TEST_P(MdrFreeCentreUnderForce, IsCarriedOnWhereAWallHasGoneAway) {
   EXPECT_EQ(result.time_of("dent-touched"), 2.0);
   EXPECT_NEAR(result.last("z-.force"), 0.01, 1e-9);
   EXPECT_NEAR(result.last("z-.overlap"), result.last("z+.overlap"), 1e-6 * result.last("z+.overlap"));
-}
-
-TEST_P(MdrFreeCentreUnderForce, IsRefusedWhereNoWallIsInThePath) {
-  CheckedScenario scenario = against_a_fixed_wall(force_path({0.02}));
-  scenario.loading.walls[1] = wall("z-", Eigen::Vector3d(0.1, 0.0, 1.0), {}, 0.01);
-  const TestRun result = run(scenario, GetParam());
-  EXPECT_EQ(result.record.status, RunStatus::stopped);
-  EXPECT_NE(result.record.message.find("no contact holds the free centre"), std::string::npos) << result.record.message;
 }
 
 INSTANTIATE_TEST_SUITE_P(AllForms, MdrFreeCentreUnderForce, ::testing::ValuesIn(k_integrators), [](const auto& test) {

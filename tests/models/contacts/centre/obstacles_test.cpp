@@ -51,5 +51,37 @@ TEST(ObstaclesOfACentre, MayLeaveNoRoom) {
   EXPECT_TRUE(is_cleared({{0, Eigen::Vector3d::UnitX(), 0.1}, {1, -Eigen::Vector3d::UnitX(), -0.1}}, c));
 }
 
+/// A corner: a floor and a wall to the left, with gaps, and a roof beyond reach of a push downwards.
+const std::vector<Obstacle> k_corner = {{0, {0, 0, -1}, -0.1}, {1, {-1, 0, 0}, -0.2}, {2, {0, 0, 1}, 0.0}};
+
+TEST(LooseParticle, IsCarriedAgainstThePushToTheWallThatBearsIt) {
+  std::vector<char> touches = {0, 0, 1};
+  const auto c = carried_to_support({0, 0, 2}, k_corner, touches, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(c);
+  EXPECT_EQ(*c, Eigen::Vector3d(0, 0, -0.1));
+  EXPECT_EQ(touches, (std::vector<char>{1, 0, 0}));
+}
+
+TEST(LooseParticle, SlidesAlongTheFirstWallToTheOneThatBearsTheRest) {
+  std::vector<char> touches = {0, 0, 0};
+  const auto c = carried_to_support({1, 0, 2}, k_corner, touches, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(c);
+  EXPECT_NEAR((*c - Eigen::Vector3d(-0.2, 0, -0.1)).norm(), 0.0, 1e-15);
+  EXPECT_EQ(touches, (std::vector<char>{1, 1, 0}));
+}
+
+TEST(LooseParticle, StaysWhereWallsBearThePushAlready) {
+  std::vector<char> touches = {1, 0, 0};
+  const auto c = carried_to_support({0, 0, 1}, k_corner, touches, {0.3, 0, -0.1});
+  ASSERT_TRUE(c);
+  EXPECT_EQ(*c, Eigen::Vector3d(0.3, 0, -0.1));
+}
+
+TEST(LooseParticle, HasNoSupportWhereNoWallIsInThePath) {
+  std::vector<char> touches = {0, 0, 0};
+  EXPECT_FALSE(carried_to_support({0, 1, 0}, k_corner, touches, Eigen::Vector3d::Zero()));
+  EXPECT_FALSE(carried_to_support({0, 1, 1}, k_corner, touches, Eigen::Vector3d::Zero()));
+}
+
 }  // namespace
 }  // namespace monograin::contacts::obstacles_test
