@@ -308,7 +308,7 @@ void MaterialPoint::observe(double xi, std::span<const double> y, std::span<doub
       unit * std::abs(now.s),
       unit * stress_of(Channel::axial, phase_.conditions, xi, now),
       unit * stress_of(Channel::lateral, phase_.conditions, xi, now),
-      now.at.relative_density,
+      compressible ? now.at.relative_density : k_nan,
       compressible ? 0.0 - y[k_phi] : 0.0,  // not -0
       y[k_deviatoric],
       y[k_phi],
@@ -349,7 +349,8 @@ double MaterialPoint::quantity(Quantity quantity, int, double xi, std::span<cons
     case Quantity::stress_lateral:
       return yield_pressure_ * stress_of(Channel::lateral, phase_.conditions, xi, now);
     case Quantity::relative_density:
-      return now.at.relative_density;
+      // Von Mises plasticity has no density. Conditions are above 0, so that none is ever met.
+      return is_compressible(phase_.parameters.model) ? now.at.relative_density : 0.0;
     default:
       break;
   }

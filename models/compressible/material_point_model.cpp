@@ -67,7 +67,7 @@ constexpr std::array k_point_material{
                 {},
                 true},
     QuantityKey{"relative_density",
-                "relative density at the start; not given: the reference density (vm: no effect)",
+                "relative density at the start; not given: the reference density (vmdc, dpc)",
                 Dimension::none,
                 k_density,
                 {},
@@ -105,7 +105,12 @@ constexpr std::array k_lateral_drives{
 constexpr std::array k_conditions{
     QuantityKey{"stress_axial", "axial stress, tension positive", Dimension::stress, {}, {}, true},
     QuantityKey{"stress_lateral", "lateral stress, tension positive", Dimension::stress, {}, {}, true},
-    QuantityKey{"relative_density", "relative density without load", Dimension::none, k_density, {}, true},
+    QuantityKey{"relative_density",
+                "relative density without load (vmdc, dpc; vm has none and never meets it)",
+                Dimension::none,
+                k_density,
+                {},
+                true},
 };
 
 constexpr std::array k_point_regimes{
@@ -130,11 +135,12 @@ constexpr std::array k_point_events{
     Term{"limit", "another end of the equations; the message says which"},
 };
 
-constexpr std::array<string_view, 9> k_point_domain{
+constexpr std::array<string_view, 10> k_point_domain{
     "tension is positive; strains are logarithmic, along fixed principal axes",
     "rate independent: the same curve whatever the durations",
     "vmdc, dpc: axis ratio eps, cap centre pi3 above zero, relative density below 1, Poisson's ratio below 1/2; events "
     "where a run reaches one of these, a fault where it starts beyond",
+    "vm has no density: its column relative_density is nan",
     "moduli up to 1e10 yield pressures: a run ends where they grow beyond (xi, xi1), because stresses are then lost in "
     "the round-off of the strains",
     "dpc: an arc (transition_width) that ends above the axis of pressure",
@@ -356,7 +362,10 @@ Model material_point_model() noexcept {
           .parameters = point_parameters,
           .draw = draw_material_point,
           .draw_program = draw_material_point_program,
-          .check = check_material_point};
+          .check = check_material_point,
+          .may_be_undefined = [](const CheckedRun& run, std::size_t /*row*/, string_view column) {
+            return column == "relative_density" && run.input.word("yield_model") == "vm";
+          }};
 }
 
 }  // namespace monograin::compressible

@@ -29,7 +29,7 @@ struct Parameters {
   double xi1 = 0.0;                ///< growth of Poisson's ratio, linear
   double xi2 = 0.0;                ///< growth of the cap's axis ratio, linear
   double reference_density = 0.7;  ///< relative density to which the values above belong, > 0
-  double relative_density = 0.7;   ///< at the start, > 0, < 1
+  double relative_density = 0.7;   ///< at the start, > 0, < 1; no effect in von Mises plasticity
   double transition_width = 0.0;   ///< pi8, size of the arc between shear line and cap (dpc only), >= 0
 };
 
@@ -41,7 +41,7 @@ struct Evolving {
 
 /// The material at one state of densification.
 struct Properties {
-  double relative_density = 0.0;  ///< without load (eq. 3a)
+  double relative_density = 0.0;  ///< without load (eq. 3a); no meaning in von Mises plasticity
   Evolving youngs_modulus;
   Evolving poisson_ratio;
   Evolving bulk_modulus;

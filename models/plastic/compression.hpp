@@ -117,8 +117,8 @@ struct RadiusSeries {
 
 // --- Fall of the mean pressure in the fully plastic regime.
 
-/// The pressure falls from its greatest value H_max at x = `start` to its least one H_min at x = `end`
-/// (eqs. 2.25-2.40):
+/// The pressure goes from H_max at x = `start` to H_min at x = `end`, where its slope is zero (eqs. 2.25-2.40). It
+/// falls if H_max > 1; otherwise, as of materials that harden strongly, H_min is the greater one and it rises:
 ///
 ///   H = H_max - (H_max - H_min) (T(z)/T(Z))^r,   T(z) = tanh(q z) cos(z - s),   z = x - start,   Z = end - start
 ///
@@ -126,12 +126,12 @@ struct RadiusSeries {
 /// Elsewhere H_min is the mean of two estimates: that of simple compression at the same x, and that which gives the
 /// inflexion point the slope of simple compression.
 struct PressureFall {
-  double greatest = 0.0;         ///< H_max
-  double start = 0.0;            ///< x at which it is reached
+  double greatest = 0.0;         ///< H_max, at `start`
+  double start = 0.0;            ///< x at which the fall begins
   double exponent_excess = 0.0;  ///< r - 1, >= 0
   double rate = 0.0;             ///< q
-  double end = 0.0;              ///< x of the least pressure
-  double least = 0.0;            ///< H_min
+  double end = 0.0;              ///< x at which the fall ends
+  double least = 0.0;            ///< H_min, at `end`
   double amplitude = 0.0;        ///< p = (H_max - H_min)/T(Z)^r; negative where the pressure rises instead
   double shift = 0.0;            ///< s; negative for early minima
   double lag = 0.0;              ///< Z - s
@@ -154,8 +154,9 @@ struct PressureFall {
 /// branch.
 [[nodiscard]] ValueAndSlope falling_pressure(const PressureFall& fall, double x) noexcept;
 
-/// x at which the relative density of the cell times the share of its face that is in contact reaches Gamma = 0.0593
-/// (eqs. 2.28-2.30, C.2, C.4); between 0 and 1. Die and hydrostatic compression only.
+/// x at which a sixth of the cell's relative density, the part of one contact, times the share of the cell's face that
+/// is in contact reaches Gamma = 0.0593 (eqs. 2.28-2.30, C.2, C.4); between 0 and 1. Die and hydrostatic compression
+/// only.
 [[nodiscard]] double least_pressure_approach(Configuration configuration, const RadiusSeries& series);
 
 /// x at which the circles of contact reach the edges of the cell's faces and so each other: a/R = 1 in the die, and

@@ -11,7 +11,7 @@
 namespace monograin::plastic {
 
 /// Contact radius in the condition for the least pressure: the current one, or that without hardening. The source does
-/// not say which; with `ideal`, the pressure late in the die would rise again with mu above 0.66.
+/// not say which; with `ideal`, the pressure at x = 0.475 in the die would rise again with mu from 0.675 on.
 enum class MinimumCondition { current, ideal };
 
 /// Derived parameters for one exponent in one configuration.

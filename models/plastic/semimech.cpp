@@ -153,14 +153,21 @@ SemimechMaterial make_semimech_material(double youngs_modulus, double poisson_ra
           .bulk_over_yield = ratio / (3.0 * (1.0 - 2.0 * poisson_ratio))};
 }
 
+bool is_in_fitted_range(double value, double lower, double upper) noexcept {
+  // Half a dozen products, differences and unit conversions, each rounded once.
+  constexpr double round_off = 16.0 * k_epsilon;
+  return value >= lower * (1.0 - round_off) && value <= upper * (1.0 + round_off);
+}
+
 std::vector<OutOfRange> outside_calibration(double youngs_modulus, double poisson_ratio, double yield_stress,
                                             Configuration configuration) {
   const SemimechMaterial material = make_semimech_material(youngs_modulus, poisson_ratio, yield_stress);
   std::vector<OutOfRange> found;
   const auto check = [&](OutOfRange entry) {
-    if (!(entry.value >= entry.lower && entry.value <= entry.upper)) found.push_back(entry);
+    if (!is_in_fitted_range(entry.value, entry.lower, entry.upper)) found.push_back(entry);
   };
-  check({"E/((1-nu^2) Y)", material.modulus_over_yield, 117.24, 5933.40});
+  check({"E/((1-nu^2) Y)", material.modulus_over_yield, k_least_fitted_modulus_over_yield,
+         k_greatest_fitted_modulus_over_yield});
   if (is_enclosed(configuration)) {
     check({"E/Y", youngs_modulus / yield_stress, 100.0, 5000.0});
     check({"nu", poisson_ratio, 0.2, 0.48});

@@ -3,8 +3,8 @@
 ///
 /// Between x_y < x_Hmax < x_Hmin < x_zp the mean pressure follows five laws that join with their slopes; simple
 /// compression has the first three only. The contact radius is one series throughout. In the elastic regime the
-/// pressure is Hertz's but the contact radius is not, so the force is D1^2 times Hertz's (1.35 to 3.07 times for
-/// E/((1-nu^2) Y) from 22 to 6000).
+/// pressure is Hertz's but the contact radius is not, so the force is D1^2 times Hertz's: 1.35 to 3.07 times in simple
+/// compression, 1.42 to 3.22 in a die, 1.58 to 3.59 under hydrostatic compression, over all E/((1-nu^2) Y) of the law.
 /// Source, unless said otherwise: Shahin (2021), chapter 2.
 #pragma once
 
@@ -26,8 +26,16 @@ struct SemimechMaterial {
 /// Least lambda at which the elastic-plastic branch can end with the slope zero (c2 = 1); printed as 22.08.
 constexpr double k_least_modulus_over_yield = 22.093089842902306;
 
+/// True for a ratio inside a fitted range, or outside of it by round-off of the products it is made of.
+[[nodiscard]] bool is_in_fitted_range(double value, double lower, double upper) noexcept;
+
+/// Range of lambda over which the source fitted the law.
+constexpr double k_least_fitted_modulus_over_yield = 117.24;
+constexpr double k_greatest_fitted_modulus_over_yield = 5933.40;
+
 /// Ratios of a material that are outside the source's calculations: lambda in 117.24..5933.40 and, where the particle
-/// is enclosed, E/Y in 100..5000, nu in 0.2..0.48 and zeta in 64..28000 (ranges of Tables 2.1 and A.1).
+/// is enclosed, E/Y in 100..5000, nu in 0.2..0.48 and zeta in 64..28000 (ranges of Tables 2.1 and A.1). A ratio at an
+/// end of its range is inside, whatever the round-off of its digits.
 [[nodiscard]] std::vector<OutOfRange> outside_calibration(double youngs_modulus, double poisson_ratio,
                                                           double yield_stress, Configuration configuration);
 

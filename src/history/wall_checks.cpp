@@ -66,6 +66,15 @@ std::vector<WallPlane> foremost(std::span<const WallPlane> walls) {
   return kept;
 }
 
+/// True if walls can enclose a space. Two opposite walls cannot, however close they are: they leave the sides open.
+bool can_enclose(std::span<const ContactClass> classes) {
+  std::vector<WallPlane> around_a_ball;
+  for (const ContactClass& c : classes) {
+    for (const Eigen::Vector3d& normal : c.normals) around_a_ball.push_back({normal, 1.0});
+  }
+  return std::isfinite(space_between(around_a_ball));
+}
+
 /// Rows in which a step or the run ends.
 std::vector<std::size_t> ends_of_steps(const Table& history) {
   std::vector<std::size_t> ends;
@@ -104,6 +113,7 @@ double space_between(std::span<const WallPlane> all) {
 }
 
 std::optional<std::string> space_warning(const Table& history, std::span<const ContactClass> classes, double radius) {
+  if (!can_enclose(classes)) return std::nullopt;
   const std::vector<std::size_t> displacements = columns_of(history, classes, "displacement");
   const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3);
   double least = 1.0;

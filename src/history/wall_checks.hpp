@@ -22,7 +22,8 @@ struct WallPlane {
 [[nodiscard]] double space_between(std::span<const WallPlane> all);
 
 /// Warning where the walls leave the particle less space than its own volume, at the end of a step or of the run; empty
-/// if they never do. A solid particle without pores then fills the cell, and resists as a whole.
+/// if they never do, or if they enclose nothing, as two opposite walls. A solid particle without pores then fills the
+/// cell, and resists as a whole.
 /// @param history  has a column `displacement` for each class
 /// @param radius   initial radius R0 [m], > 0
 [[nodiscard]] std::optional<std::string> space_warning(const Table& history, std::span<const ContactClass> classes,

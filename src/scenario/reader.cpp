@@ -68,6 +68,11 @@ void read_ludwik(Reading& reading, const Section& material, const Language& lang
                                                              .fits_both = section.text("fit") == "both"});
     scenario.material.emplace("strength", power_law.strength);
     scenario.material.emplace("hardening_exponent", power_law.exponent);
+    if (!modulus) {
+      scenario.doubts.emplace_back(
+          "ludwik without youngs_modulus: the power law is fitted for a rigid-plastic material (E infinite); a modulus "
+          "that is added, as for unloading, changes the loading curve, too");
+    }
   } catch (const std::logic_error& error) {  // objections of the fit
     reading.faults.add(material.value_place("ludwik"), fmt::format("ludwik: {}", error.what()));
   }
@@ -255,7 +260,7 @@ CheckedScenario read_tree(const toml::table& tree, const std::string& origin, co
   read_numerics(reading, root, language, scenario);
   if (faults_so_far == 0) read_sensitivities(reading, root, tree, language, scenario);
   if (language.model != nullptr && faults_so_far == 0) check_rules(reading, tree, origin, language, scenario);
-  scenario.doubts = std::move(reading.doubtful_lengths);
+  std::ranges::move(reading.doubtful_lengths, std::back_inserter(scenario.doubts));
   // Without any unit, the file may be meant in units of its own, with a modulus of one.
   if (reading.has_units) std::ranges::move(reading.doubtful_stresses, std::back_inserter(scenario.doubts));
   return scenario;

@@ -96,7 +96,7 @@ struct CheckedScenario {
   Output output;
   Numerics numerics;
   std::vector<SensitivityKey> sensitivities;
-  std::vector<std::string> doubts;  ///< numbers without a unit that are unlikely in SI units, a sentence each
+  std::vector<std::string> doubts;                   ///< values that may not be meant as they are read, a sentence each
   std::shared_ptr<const ScenarioTemplate> variants;  ///< template for other numbers; null without sensitivities
 };
 

@@ -97,6 +97,16 @@ TEST(SpaceWarning, ComesWhereTheCellIsSmallerThanTheParticle) {
   EXPECT_EQ(warning_with(compaction("simple", 0.9 * radius), "space"), "") << "the particle can give way";
 }
 
+TEST(SpaceWarning, IsNotForWallsThatEncloseNothing) {
+  for (const std::string_view model : {"semimech", "hardening"}) {
+    const auto run = run_of(model, model == "semimech" ? k_metal : "strength = 2e7, hardening_exponent = 0.2",
+                            "configuration = \"simple\"\nsteps = [{ displacement = 0.012, duration = 1 }]");
+    EXPECT_EQ(run.record.status, RunStatus::stopped) << "the walls meet";
+    ASSERT_GT(run.record.history.row_count(), 10U);
+    EXPECT_EQ(warning_with(run, "space"), "") << model;
+  }
+}
+
 TEST(SpaceWarning, TellsTheSmallestSpaceAndWhen) {
   const auto run = run_of("cel", k_metal,
                           "configuration = \"hydrostatic\"\nsteps = [{ displacement = 0.002, duration = 1 }, "

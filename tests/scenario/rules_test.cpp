@@ -42,6 +42,15 @@ TEST(Ludwik, StandsForThePowerLawNearestToIt) {
               20.489e6, 1e3);
 }
 
+TEST(Ludwik, WithoutYoungsModulusIsFittedForARigidPlasticMaterialAndARemarkSaysSo) {
+  const std::string law = "ludwik = { yield_stress = \"5 MPa\", strength = \"15.5 MPa\", exponent = 0.35 }";
+  const CheckedScenario rigid = parse_scenario(scenario_with("hardening", law, k_ramp), "a.toml");
+  EXPECT_NEAR(rigid.material.at("hardening_exponent"), 0.2284, 5e-5);
+  ASSERT_EQ(rigid.doubts.size(), 1U);
+  EXPECT_TRUE(rigid.doubts.front().starts_with("ludwik without youngs_modulus")) << rigid.doubts.front();
+  EXPECT_EQ(parse_scenario(scenario_with("hardening", k_lead, k_ramp), "a.toml").doubts, Lines());
+}
+
 TEST(Ludwik, IsRefusedBesideThePowerLawAndWithValuesOutOfRange) {
   EXPECT_EQ(
       faults_of(scenario_with("hardening", k_lead + "\nstrength = 3", k_ramp)),

@@ -121,5 +121,32 @@ TEST(MaterialPointScenario, HasTheColumnsOfTheContract) {
   EXPECT_EQ(whole.record.history.header_value("sign"), "tension positive");
 }
 
+const std::string k_von_mises =
+    "yield_model = \"vm\"\nyield_pressure = \"100 MPa\"\nstiffness_ratio = 100\nshear_ratio = 1\nnu0 = 0.3\neta = 3";
+
+TEST(MaterialPointScenario, HasNoDensityOfVonMisesPlasticity) {
+  for (const char* density : {"", "\nrelative_density = 0.5\nreference_density = 0.4"}) {
+    const TestRun result = run(parse_scenario(die(k_von_mises + density), "point"));
+    ASSERT_GT(result.record.history.row_count(), 10U);
+    for (const double value : result.column("relative_density")) EXPECT_TRUE(std::isnan(value)) << value;
+    for (const double value : result.column("phi")) EXPECT_TRUE(std::isfinite(value)) << value;
+  }
+  for (const double value :
+       run(parse_scenario(die("preset = \"Base case\""), "point"), "cvode-bdf").column("relative_density"))
+    EXPECT_TRUE(std::isfinite(value)) << value;
+}
+
+TEST(MaterialPointScenario, NeverMeetsADensityOfVonMisesPlasticity) {
+  for (const char* density : {"0.01", "0.7", "0.9"}) {
+    const std::string until = std::string("until = { relative_density = ") + density + " }, duration";
+    std::string text = die(k_von_mises);
+    text.replace(text.find("duration"), std::string("duration").size(), until);
+    const TestRun result = run(parse_scenario(text, "point"));
+    EXPECT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+    EXPECT_FALSE(result.has_event("until-met")) << density;
+    EXPECT_EQ(result.last("strain_axial"), -0.1) << density;
+  }
+}
+
 }  // namespace
 }  // namespace monograin::compressible::scenario_test

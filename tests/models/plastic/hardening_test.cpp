@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -218,6 +219,67 @@ TEST(HardeningJoints, BearThePressuresThatDefineThem) {
           << "1/m = " << exponent << ", " << configuration;
       if (configuration == Configuration::simple) {
         EXPECT_EQ(law.fall.least, 1.0);
+      }
+    }
+  }
+}
+
+// --- fall of the reduced pressure H/x^(mu/2), and of the mean pressure
+
+TEST(HardeningReducedPressure, FallsBelowTheExponentAtWhichItsGreatestValueIsOneAndRisesAbove) {
+  const double turn = std::log(3.101) / 1.748;
+  for (const double exponent : {0.0, 0.1, 0.327, turn - 1e-4, turn + 1e-4, 0.6585, 1.0}) {
+    for (const Configuration configuration : k_configurations) {
+      const HardeningLaw law = make_hardening(exponent, configuration);
+      const double sign = exponent < turn ? 1.0 : -1.0;
+      EXPECT_GT(sign * law.fall.amplitude, 0.0) << "1/m = " << exponent << ", " << configuration;
+      EXPECT_GT(sign * (law.fall.greatest - law.fall.least), 0.0) << "1/m = " << exponent << ", " << configuration;
+      const double end = std::min(law.fall.end, std::nextafter(law.limit, 0.0));
+      double before = law.fall.greatest;
+      for (int k = 1; k <= 100; ++k) {
+        const double x = 1e-2 * k * end;
+        const double reduced = state_at(law, x).pressure / std::pow(x, 0.5 * exponent);
+        // Round-off exceeds the changes where the fall is nearly flat.
+        EXPECT_GE(sign * (before - reduced), -16.0 * k_epsilon)
+            << "1/m = " << exponent << ", " << configuration << ", " << x;
+        before = reduced;
+      }
+    }
+  }
+  EXPECT_NEAR(make_hardening(0.6585, Configuration::simple).fall.greatest, 0.98085, 5e-6);
+  EXPECT_NEAR(make_hardening(0.6585, Configuration::simple).fall.amplitude, -0.0191, 5e-5);
+}
+
+/// The x at which the mean pressure is least between its first maximum and the end of its fall; 0 if it only rises.
+double least_mean_pressure_approach(double exponent, Configuration configuration) {
+  const HardeningLaw law = make_hardening(exponent, configuration);
+  double least = 0.0;
+  for (int k = 1; k < 2000; ++k) {
+    const double x = law.fall.end * k / 2000.0;
+    if (state_at(law, x).pressure_by_approach < 0.0) least = x;
+  }
+  return least;
+}
+
+TEST(HardeningMeanPressure, IsLeastBeforeTheEventOfTheReducedOneAndOnlyForSmallExponents) {
+  EXPECT_NEAR(least_mean_pressure_approach(0.1, Configuration::die), 0.191, 5e-4);
+  EXPECT_NEAR(make_hardening(0.1, Configuration::die).fall.end, 0.320, 5e-4);
+  // Exponents from which on the mean pressure rises throughout.
+  for (const auto& [configuration, exponent] :
+       {std::pair(Configuration::simple, 0.330), std::pair(Configuration::die, 0.322),
+        std::pair(Configuration::hydrostatic, 0.295)}) {
+    EXPECT_GT(least_mean_pressure_approach(exponent - 1e-3, configuration), 0.0) << configuration;
+    EXPECT_EQ(least_mean_pressure_approach(exponent + 1e-3, configuration), 0.0) << configuration;
+  }
+}
+
+TEST(HardeningMeanPressure, RisesWhilePoresCloseWhateverTheExponent) {
+  for (const double exponent : {0.0, 0.1, 0.327, 0.6585, 1.0}) {
+    for (const Configuration configuration : k_enclosed) {
+      const HardeningLaw law = make_hardening(exponent, configuration);
+      for (int k = 1; k < 100; ++k) {
+        const double x = law.fall.end + 1e-2 * k * (law.zero_porosity - law.fall.end);
+        EXPECT_GT(state_at(law, x).pressure_by_approach, 0.0) << "1/m = " << exponent << ", " << configuration;
       }
     }
   }

@@ -15,6 +15,7 @@
 
 #include "models/accuracy.hpp"
 #include "models/plastic/cases.hpp"
+#include "plastic/model.hpp"
 
 namespace monograin::plastic {
 
@@ -222,6 +223,20 @@ TEST(LudwikStress, IsYieldStressPlusAPower) {
   EXPECT_EQ(ludwik_stress(k_lead, 0.0), 5.0);
   EXPECT_EQ(ludwik_stress(k_lead, 1.0), 20.5);
   EXPECT_EQ(ludwik_stress({1e4, 5.0, 2.0, 2.0}, 0.25), 6.0);
+}
+
+TEST(LudwikOfAScenario, IsFittedOverATotalStrainThatDependsOnYoungsModulus) {
+  const auto fit = [](double youngs_modulus) {
+    return hardening_model().power_law_of({.youngs_modulus = youngs_modulus,
+                                           .yield_stress = 5e6,
+                                           .strength = 15.5e6,
+                                           .exponent = 0.35,
+                                           .largest_strain = 1.0,
+                                           .fits_both = true});
+  };
+  EXPECT_NEAR(fit(10e9).exponent, 0.2299, 5e-5);
+  EXPECT_NEAR(fit(1e9).exponent, 0.2441, 5e-5);
+  EXPECT_NEAR(fit(k_infinity).exponent, 0.2284, 5e-5);
 }
 
 }  // namespace

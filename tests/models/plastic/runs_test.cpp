@@ -268,6 +268,76 @@ TEST(SemimechWarnings, SayWhereAWholeRunIsTooStiff) {
   EXPECT_FALSE(warns(0.031));
 }
 
+TEST(SemimechWarnings, NameTheStiffnessOfTheConfigurationThatRuns) {
+  const auto warning = [](Walls walls) {
+    std::string all;
+    for (const std::string& text : run(unloading_steel(walls, {ramp(0.01)})).record.warnings) all += text;
+    return all;
+  };
+  EXPECT_TRUE(contains(warning(Walls::simple),
+                       "its force (simple) is 19 to 58 % above finite elements, and in the "
+                       "elastic regime 2.20 to 3.06 times that of Hertz"))
+      << warning(Walls::simple);
+  EXPECT_TRUE(contains(warning(Walls::die),
+                       "its force (die) is 18 to 50 % above finite elements, and in the elastic "
+                       "regime 2.30 to 3.21 times that of Hertz"))
+      << warning(Walls::die);
+  EXPECT_TRUE(contains(warning(Walls::hydrostatic),
+                       "its force (hydrostatic) is 15 to 66 % above finite elements, and "
+                       "in the elastic regime 2.57 to 3.58 times that of Hertz"))
+      << warning(Walls::hydrostatic);
+}
+
+TEST(SemimechWarnings, DoNotNameTheEndOfARangeThatRoundOffPasses) {
+  const auto warns = [](double lambda) {
+    const TestRun result = run(semimech_scenario(Walls::die, lambda * 0.91 * 3.0, 0.3, 3.0, {ramp(0.05)}));
+    return std::ranges::any_of(result.record.warnings,
+                               [](const std::string& text) { return contains(text, "lateral contacts were fitted"); });
+  };
+  EXPECT_FALSE(warns(k_least_lateral_modulus_over_yield));
+  EXPECT_FALSE(warns(k_greatest_lateral_modulus_over_yield));
+  EXPECT_TRUE(warns(k_least_lateral_modulus_over_yield * (1.0 - 1e-12)));
+  EXPECT_TRUE(warns(k_greatest_lateral_modulus_over_yield * (1.0 + 1e-12)));
+}
+
+TEST(PlasticUnloading, OfSmallContactsOfAPowerLawReturnsMoreThanTheirWork) {
+  // kappa = 20 MPa, E = 1 GPa: 50 kappa.
+  struct Row {
+    CheckedScenario scenario;
+    double from_a_thousandth, end_of_creation;
+  };
+  for (const Row& row : {Row{similarity_scenario(Walls::simple, 1.0, 0.24, {}), 1.293, 0.00188},
+                         Row{hardening_scenario(Walls::simple, 1.0, 0.24, {}), 1.259, 0.00174}}) {
+    CheckedScenario small = unloading(row.scenario, 50.0, 0.4);
+    small.loading.steps = {ramp(0.001), ramp(-0.001)};
+    const TestRun returned = run(small);
+    const double work = largest(returned.column("work"));
+    EXPECT_NEAR((work - returned.last("work")) / work, row.from_a_thousandth, 1e-3) << small.model;
+    EXPECT_TRUE(energy_warning(returned.record.history, 1.0, small.model, 0.0)) << small.model;
+    small.loading.steps = {ramp(0.004)};
+    small.output.points = 4000;
+    const TestRun loaded = run(small);
+    const std::vector<double> x = loaded.column("axial.displacement");
+    const std::vector<double> dissipation = loaded.column("dissipation");
+    double last_negative = 0.0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      if (dissipation[k] < 0.0) last_negative = std::max(last_negative, x[k]);
+    }
+    EXPECT_NEAR(last_negative, row.end_of_creation, 1e-5) << small.model;
+  }
+}
+
+TEST(PlasticUnloading, OfAHardeningParticleCreatesEnergyJustBeforeZeroPorosity) {
+  CheckedScenario scenario = unloading(hardening_scenario(Walls::hydrostatic, 1.0, 0.24, {ramp(0.1939)}), 250.0, 0.3);
+  scenario.output.points = 20000;
+  const TestRun now = run(scenario);
+  const std::vector<double> x = now.column("axial.displacement");
+  const std::vector<double> dissipation = now.column("dissipation");
+  const auto peak = static_cast<std::size_t>(std::ranges::max_element(dissipation) - dissipation.begin());
+  EXPECT_NEAR(x[peak], 0.1933, 5e-5);
+  EXPECT_NEAR((dissipation[peak] - dissipation.back()) / now.last("work"), 0.0239, 1e-4);
+}
+
 TEST(PlasticUnloading, WarnsOfContactsThatRecoverMoreThanTheyWereCompressed) {
   const double yield = std::get<SemimechLaw>(law_of(steel(Walls::simple, {}))).yield_approach;
   const TestRun small = run(unloading_steel(Walls::simple, {ramp(1.05 * yield), ramp(0.9 * yield)}));

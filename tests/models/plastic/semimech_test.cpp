@@ -647,6 +647,53 @@ TEST(SemimechDomain, NamesWhatIsOutsideTheCalibration) {
   EXPECT_EQ(enclosed[2].value, 0.1);
 }
 
+TEST(SemimechDomain, CountsTheEndsOfTheCalibrationAsInsideWhateverTheRoundOff) {
+  const auto is_inside = [](double lambda, double yield_stress) {
+    return outside_calibration(lambda * 0.91 * yield_stress, 0.3, yield_stress, Configuration::simple).empty();
+  };
+  for (const double yield_stress : {1.0, 3.0, 7e6, 20e6, 123.4e6, 0.1}) {
+    EXPECT_TRUE(is_inside(117.24, yield_stress)) << yield_stress;
+    EXPECT_TRUE(is_inside(5933.40, yield_stress)) << yield_stress;
+    EXPECT_FALSE(is_inside(117.24 * (1.0 - 1e-12), yield_stress)) << yield_stress;
+    EXPECT_FALSE(is_inside(5933.40 * (1.0 + 1e-12), yield_stress)) << yield_stress;
+  }
+  EXPECT_FALSE(is_in_fitted_range(k_nan, 0.0, 1.0));
+}
+
+TEST(SemimechForce, IsThatOfHertzTimesAFactorWithinTheRangeOfItsConfiguration) {
+  struct Row {
+    Configuration configuration;
+    double softest, least_fitted, greatest_fitted, stiffest;
+  };
+  for (const Row& row :
+       {Row{Configuration::simple, 1.35, 2.20, 3.06, 3.07}, Row{Configuration::die, 1.42, 2.30, 3.21, 3.22},
+        Row{Configuration::hydrostatic, 1.58, 2.57, 3.58, 3.59}}) {
+    const auto factor = [&](double lambda) {
+      const SemimechLaw law =
+          make_semimech({.modulus_over_yield = lambda, .bulk_over_yield = lambda}, row.configuration);
+      const double x = 1e-9 * law.yield_approach;
+      return state_at(law, x).force / (4.0 / 3.0 * lambda * x * std::sqrt(x));
+    };
+    EXPECT_NEAR(factor(k_least_modulus_over_yield), row.softest, 5e-3) << row.configuration;
+    EXPECT_NEAR(factor(k_least_fitted_modulus_over_yield), row.least_fitted, 5e-3) << row.configuration;
+    EXPECT_NEAR(factor(k_greatest_fitted_modulus_over_yield), row.greatest_fitted, 5e-3) << row.configuration;
+    EXPECT_NEAR(factor(1e9), row.stiffest, 5e-3) << row.configuration;
+  }
+}
+
+TEST(SemimechMinimum, IsWhereASixthOfTheDensityTimesTheShareInContactIsTheConstantOfTheSource) {
+  for (const double lambda : {123.41, 1099.0, 5933.40}) {
+    for (const Configuration configuration : {Configuration::die, Configuration::hydrostatic}) {
+      const SemimechLaw law = make_semimech({.modulus_over_yield = lambda, .bulk_over_yield = lambda}, configuration);
+      const double x = law.fall.end;
+      const double half_face = configuration == Configuration::die ? 1.0 : 1.0 - x;
+      const double share = pi * std::pow(contact_radius(law.radius, x).value / (2.0 * half_face), 2);
+      const double density = 1.0 / (1.0 + cell_excess(configuration, x));
+      EXPECT_NEAR(density / 6.0 * share, 0.0593, 1e-12) << lambda << ", " << configuration;
+    }
+  }
+}
+
 TEST(SemimechBoundaries, BearTheNamesOfTheirEvents) {
   const auto names = [](Configuration configuration) {
     std::vector<std::string> list;
