@@ -5,6 +5,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <tuple>
+#include <utility>
+
 #include "bindings.hpp"
 
 namespace monograin::python {
@@ -33,6 +36,39 @@ py::dict units_of(const History& history) {
   return units;
 }
 
+using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Name, unit, labels and values of every column.
+py::list parts_of(const py::object& self) {
+  py::list parts;
+  const Table& table = self.cast<const History&>().table();
+  for (std::size_t k = 0; k < table.columns().size(); ++k) {
+    Values values(static_cast<py::ssize_t>(table.row_count()));
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      values.mutable_at(static_cast<py::ssize_t>(row)) = table.at(row, k);
+    }
+    const Column& column = table.columns()[k];
+    parts.append(py::make_tuple(column.name, column.unit, column.labels, values));
+  }
+  return parts;
+}
+
+/// The table of such parts.
+History table_of(std::vector<std::pair<std::string, std::string>> header,
+                 const std::vector<std::tuple<std::string, std::string, std::vector<std::string>, Values>>& parts) {
+  std::vector<Column> columns;
+  for (const auto& [name, unit, labels, values] : parts) columns.push_back({name, unit, labels});
+  Table table(std::move(columns));
+  table.header = std::move(header);
+  std::vector<double> row(parts.size());
+  const py::ssize_t count = parts.empty() ? 0 : std::get<Values>(parts.front()).size();
+  for (py::ssize_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] = std::get<Values>(parts[k]).at(i);
+    table.append(row);
+  }
+  return history_of(std::move(table));
+}
+
 }  // namespace
 
 void add_history(py::module_& module) {
@@ -42,9 +78,11 @@ void add_history(py::module_& module) {
       .def_property_readonly("units", &units_of)
       .def_property_readonly("header", [](const History& history) { return history.table().header; })
       .def("contains", [](const History& history, const std::string& name) { return history.contains(name); })
+      .def("parts", &parts_of)
       .def("csv", [](const History& history) { return csv_text(history.table()); })
       .def("values", &values_of)
       .def("labels", [](const History& history, const std::string& name) { return column_of(history, name).labels; });
+  module.def("table_of", &table_of);
   module.def("read_csv", [](const std::string& file) { return history_of(read_csv(file)); });
 }
 

@@ -7,18 +7,25 @@
 #include <optional>
 
 #include "bindings.hpp"
+#include "monograin/run.hpp"
 
 namespace monograin::python {
 
+/// Identifier of the interpreter's main thread; noted when the module is made.
+inline unsigned long& main_thread() {
+  static unsigned long identifier = 0;
+  return identifier;
+}
+
 /// Looks for signals on behalf of work without the interpreter's lock. Python handles them in its main thread, and only
-/// when asked.
+/// when asked; in other threads there is nothing to look for.
 class SignalWatch {
  public:
   /// True once a signal's handler has raised. Asks twenty times a second at most; call it from the thread that Python
   /// has called, without the lock.
   [[nodiscard]] bool has_raised() {
     const auto now = std::chrono::steady_clock::now();
-    if (!raised_ && now >= next_) {
+    if (is_main_thread_ && !raised_ && now >= next_) {
       next_ = now + k_between_looks;
       guard_.wait_if_finalizing();
       const py::gil_scoped_acquire acquired;
@@ -39,9 +46,25 @@ class SignalWatch {
 
  private:
   LockGuard guard_;
+  bool is_main_thread_ = PyThread_get_thread_ident() == main_thread();
   std::optional<py::error_already_set> raised_;
   std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + k_between_looks;
 };
+
+/// Makes a run in this thread, without the interpreter's lock, and ends it where a signal's handler raises.
+/// @param make  function of RunOptions that returns the run
+/// @throws py::error_already_set with what the handler has raised
+template <class Make>
+RunResult run_watched(Make&& make) {
+  SignalWatch watch;
+  try {
+    const Unlocked unlocked;
+    return make(RunOptions{.stop = [&watch] { return watch.has_raised(); }});
+  } catch (const RunInterrupted&) {
+    watch.rethrow();
+    throw;
+  }
+}
 
 /// Thrown by work that was asked to stop; nobody sees it but run_interruptibly().
 struct Stopped {};

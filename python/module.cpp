@@ -2,10 +2,12 @@
 // files of the package add both.
 
 #include "bindings.hpp"
+#include "interruptible.hpp"
 #include "monograin/version.hpp"
 
 PYBIND11_MODULE(_core, module) {
   using namespace monograin::python;
+  main_thread() = py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
   module.attr("__version__") = std::string(monograin::version());
   add_errors(module);
   add_history(module);

@@ -20,8 +20,7 @@ std::span<const double> span_of(const Numbers& numbers) {
 
 RunResult run_prepared(const PreparedScenario& prepared, const Numbers& values) {
   const std::span<const double> numbers = span_of(values);
-  const Unlocked unlocked;
-  return prepared.run(numbers);
+  return run_watched([&](const RunOptions& options) { return prepared.run(numbers, options); });
 }
 
 /// Runs the samples without the interpreter's lock.

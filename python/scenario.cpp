@@ -12,7 +12,9 @@
 #include "bindings.hpp"
 #include "history/run.hpp"
 #include "history/staged_folder.hpp"
+#include "interruptible.hpp"
 #include "monograin/run.hpp"
+#include "scenario/edit.hpp"
 #include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
 #include "study/atlas/profile.hpp"
@@ -40,10 +42,11 @@ SoundScenario read_sound(const std::string& file) {
 }
 
 RunResult run_sound(const SoundScenario& scenario) {
-  const Unlocked unlocked;
-  Run run = run_scenario(scenario.checked);
-  run.timings.parse = scenario.parse_time;
-  return RunResult(std::make_shared<const Run>(std::move(run)));
+  return run_watched([&](const RunOptions& options) {
+    Run run = run_scenario(scenario.checked, interruptible(options.stop));
+    run.timings.parse = scenario.parse_time;
+    return RunResult(std::make_shared<const Run>(std::move(run)));
+  });
 }
 
 py::list parameters_of(const SoundScenario& scenario) {
@@ -79,9 +82,17 @@ void add_scenario(py::module_& module) {
       .def_property_readonly("name", [](const SoundScenario& scenario) { return scenario.checked.name; })
       .def_property_readonly("title", [](const SoundScenario& scenario) { return scenario.checked.title; })
       .def_property_readonly("model", [](const SoundScenario& scenario) { return scenario.checked.model; })
+      .def("to_toml",
+           [](const SoundScenario& scenario) {
+             return text_with_overrides(scenario.source.text(), scenario.source.overrides());
+           })
       .def("run", &run_sound)
       .def("parameters", &parameters_of)
       .def("profile", &profile_of);
+  module.def("appended_override", [](std::vector<std::string> overrides, std::string text) {
+    append_override(overrides, std::move(text));
+    return overrides;
+  });
   module.def("save_run", &save_texts);
   py::class_<RunResult>(module, "Run")
       .def_property_readonly("status", [](const RunResult& run) { return to_string(run.status); })

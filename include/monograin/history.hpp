@@ -32,6 +32,10 @@ class History {
   explicit History(std::vector<Column> columns);
   /// A history over a recorded table, which it shares.
   explicit History(std::shared_ptr<const Table> table);
+  /// A history that was moved from stays as it was.
+  History(const History&) = default;
+  History& operator=(const History&) = default;
+  ~History() = default;
 
   [[nodiscard]] std::size_t row_count() const noexcept;
   /// Names of the columns, without units, in the order in which history.csv has them.

@@ -36,7 +36,7 @@ class PreparedScenario {
  public:
   /// Reads and checks a scenario.
   /// @param keys  keys whose values are numbers, spelled as for Scenario::set()
-  /// @throws ScenarioError with all faults of the scenario, or with the keys that do not hold a number
+  /// @throws ScenarioError with all faults of the scenario, or with the keys that do not hold a number or stand twice
   PreparedScenario(const Scenario& scenario, std::vector<std::string> keys);
 
   /// The keys that vary, in the order in which run() and map() take their values.
@@ -46,7 +46,8 @@ class PreparedScenario {
   /// @param values  in SI units, one for each key
   /// @throws ScenarioError if a value is not admissible
   /// @throws std::invalid_argument if the number of values is not that of the keys
-  [[nodiscard]] RunResult run(std::span<const double> values) const;
+  /// @throws RunInterrupted if the options end the run
+  [[nodiscard]] RunResult run(std::span<const double> values, const RunOptions& options = {}) const;
 
   /// Runs many samples on many threads and returns a few numbers of each. A refused sample does not end the others.
   ///

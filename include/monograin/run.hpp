@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,10 +39,18 @@ class RunResult {
   std::shared_ptr<const Run> run_;
 };
 
+struct RunOptions {
+  /// Called now and then during a run, in the thread of the call. Returning true ends the run. An empty function never
+  /// ends it.
+  std::function<bool()> stop{};
+};
+
 /// Runs a scenario.
 ///
 /// A run that ends early does not throw: RunResult::status is then `stopped` (limit of the model) or `failed` (solver).
 /// @throws ScenarioError with all faults of the scenario
-[[nodiscard]] RunResult run(const Scenario& scenario);
+/// @throws RunInterrupted if the options end the run
+/// @throws std::runtime_error for a law of your own whose functions contradict each other, and what these throw
+[[nodiscard]] RunResult run(const Scenario& scenario, const RunOptions& options = {});
 
 }  // namespace monograin

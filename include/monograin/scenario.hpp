@@ -22,8 +22,9 @@ struct Parameter {
 
 /// The keys of a scenario and their values.
 ///
-/// set() takes keys in any order and checks nothing. validate() returns all faults at once, and run() refuses a
-/// scenario with faults. Copies are independent; many threads may use one const scenario.
+/// set() checks nothing. It takes keys in any order, but the entries of an array one after the other. validate()
+/// returns all faults at once, and run() refuses a scenario with faults. Copies are independent; many threads may use
+/// one const scenario.
 class Scenario {
  public:
   /// A scenario without keys.

@@ -1,6 +1,7 @@
 /// Status with which a run ends.
 #pragma once
 
+#include <stdexcept>
 #include <string_view>
 
 namespace monograin {
@@ -10,6 +11,12 @@ enum class RunStatus {
   complete,  ///< the program was run to its end
   stopped,   ///< the run reached a limit of the model's domain
   failed     ///< the solver gave up
+};
+
+/// Thrown by a run that RunOptions::stop has ended.
+class RunInterrupted : public std::runtime_error {
+ public:
+  RunInterrupted() : std::runtime_error("the run was interrupted") {}
 };
 
 /// Name of a status, as run.json has it: "complete", "stopped" or "failed".

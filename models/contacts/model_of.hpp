@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,7 @@
 #include "contacts/independent.hpp"
 #include "contacts/law_check.hpp"
 #include "system/model.hpp"
+#include "system/number_text.hpp"
 
 namespace monograin::contacts {
 
@@ -36,6 +38,9 @@ template <auto law_of>
   model.bind = [](const ModelInput& input, std::vector<ContactClass> classes,
                   const Reach& reach) -> std::unique_ptr<HybridSystem> {
     const Law law = law_of(input);
+    if (const double unit = law.unit_force(input.radius); !(unit > 0.0 && std::isfinite(unit))) {
+      throw std::runtime_error("unit_force(R0) of the law is " + number_text(unit, 6) + "; expected a force above 0 N");
+    }
     if (const std::string found = contradiction_in(law, reach.displacement / input.radius); !found.empty()) {
       throw std::runtime_error("the functions of the law do not belong together: " + found);
     }

@@ -1,10 +1,14 @@
 /// Contacts as a row of the history shows them. The functions of a law are listed in contacts/independent.hpp.
 #pragma once
 
+#include <cmath>
 #include <numbers>
+#include <string>
 
 #include "contacts/columns.hpp"
 #include "contacts/wall_contact.hpp"
+#include "system/limit.hpp"
+#include "system/number_text.hpp"
 
 namespace monograin::contacts {
 
@@ -50,6 +54,10 @@ template <class Law>
     shown.pressure = area > 0.0 ? shown.force / area : 0.0;
   } else {
     shown.force = c.is_force_controlled() ? c.drive().value(xi) : law.force(c.branch(), d);
+  }
+  if (!std::isfinite(shown.force)) {
+    throw DomainError(Limit::no_solution,
+                      "the law gives no finite force at a displacement of " + number_text(d, 6) + " R0");
   }
   return shown;
 }

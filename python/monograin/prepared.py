@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Any, Iterable, Literal, Mapping, Sequence, Union, overload
 
 import numpy as np
@@ -22,8 +23,11 @@ class Prepared:
     def __init__(self, scenario: Scenario, keys: Iterable[str]) -> None:
         if isinstance(keys, str):
             raise TypeError(f"keys: expected a list of keys, such as [{keys!r}], not one str")
+        names = list(keys)
+        if not all(isinstance(name, str) for name in names):
+            raise TypeError(f"keys: expected a list of str, not {names!r}")
         self._scenario = scenario
-        self._core = _core.Prepared(scenario._core, list(keys))
+        self._core = _core.Prepared(scenario._core, names)
 
     @property
     def scenario(self) -> Scenario:
@@ -46,8 +50,11 @@ class Prepared:
             ScenarioError: if a value is not admissible.
             SolverError: as in :meth:`monograin.Scenario.run`.
             ValueError: if the number of values is not that of the keys.
+            KeyboardInterrupt: on Ctrl-C.
         """
         numbers = self._in_order(values, getattr(values, "index", None)).copy()
+        if numbers.ndim != 1:
+            raise ValueError(f"values of shape {numbers.shape}; expected ({len(self.keys)},)")
         core = self._core.run(numbers)
         return checked(Run(core, lambda: self._scenario.replace(dict(zip(self.keys, numbers.tolist())))), check)
 
@@ -92,14 +99,14 @@ class Prepared:
         """
         if threads < 0:
             raise ValueError(f"threads = {threads}: expected 0 for one for each core, or more")
-        if isinstance(columns, str):
-            raise ValueError("columns: expected a list of formulas, not one str")
+        if isinstance(columns, str) or not all(isinstance(column, str) for column in columns):
+            raise ValueError(f"columns: expected a list of formulas, not {columns!r}")
         values = self._in_order(samples, getattr(samples, "columns", None))
         if values.ndim == 1 and len(self.keys) == 1:
             values = values[:, np.newaxis]
         if values.ndim != 2 or values.shape[1] != len(self.keys):
             raise ValueError(f"samples of shape {values.shape} for {len(self.keys)} keys; expected (n, {len(self.keys)})")
-        results, words, raised = self._core.map(values, list(columns), threads)
+        results, words, raised = self._core.map(values, list(columns), operator.index(threads))
         table = results.reshape(len(values), len(columns))
         ends = np.array([word or "pending" for word in words], dtype=str)
         if isinstance(raised, KeyboardInterrupt):

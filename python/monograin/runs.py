@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Optional, Union
+import tomllib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping, Optional, Union
 
 from numpy.typing import NDArray
 
 from . import _core, _toml
 from .errors import SolverError
-from .tables import Table, _of_text
+from .tables import Table
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -37,17 +39,24 @@ class Scenario:
     Raises:
         ScenarioError: with every fault of the scenario.
 
-    A scenario never changes. It can be pickled, and thus be sent to other processes.
+    A scenario never changes, whatever the working directory later is. It can be pickled, and thus be sent to other
+    processes.
     """
 
-    __slots__ = ("_core",)
+    __slots__ = ("_core", "_place")
     _core: _core.Scenario
+    _place: str  # absolute path of the origin
 
     def __init__(
         self, source: Union[str, Mapping[str, Any]], *, origin: Path = "scenario.toml", overrides: Iterable[str] = ()
     ) -> None:
+        if isinstance(source, os.PathLike) or (isinstance(source, str) and source.endswith(".toml")):
+            raise TypeError(f"{os.fspath(source)!r} is the name of a file; Scenario.load reads files")
+        if isinstance(overrides, str):
+            raise TypeError(f"overrides: expected a list of texts, such as [{overrides!r}], not one str")
         text = source if isinstance(source, str) else _toml.document(source)
         self._core = _core.Scenario.parse(text, os.fspath(origin), list(overrides))
+        self._place = os.path.abspath(origin)
 
     @classmethod
     def load(cls, path: Path) -> Scenario:
@@ -57,7 +66,8 @@ class Scenario:
             ScenarioError: with every fault of the scenario, or if the file cannot be read.
         """
         scenario = cls.__new__(cls)
-        scenario._core = _core.Scenario.read(os.path.abspath(path))
+        scenario._place = os.path.abspath(path)
+        scenario._core = _core.Scenario.read(scenario._place)
         return scenario
 
     def replace(self, values: Mapping[str, Any]) -> Scenario:
@@ -72,11 +82,12 @@ class Scenario:
             ScenarioError: with every fault of the new scenario.
             ValueError, TypeError: for values that no scenario can have, such as nan.
         """
-        added = {key: f"{key}={_toml.text_of(value, key)}" for key, value in values.items()}
-        kept = list(self.overrides)
-        while kept and kept[-1].partition("=")[0] in added:
-            kept.pop()
-        return Scenario(self.text, origin=self.origin, overrides=[*kept, *added.values()])
+        overrides = self.overrides
+        for key, value in values.items():
+            overrides = _core.appended_override(overrides, f"{key}={_toml.text_of(value, key)}")
+        # The name that messages show stays, unless it has become that of another file.
+        origin = self.origin if os.path.abspath(self.origin) == self._place else self._place
+        return Scenario(self.text, origin=origin, overrides=overrides)
 
     @property
     def name(self) -> str:
@@ -95,8 +106,16 @@ class Scenario:
 
     @property
     def text(self) -> str:
-        """The scenario as TOML text, without the values that were replaced."""
+        """The scenario as TOML text, without the values that were replaced; :meth:`to_toml` has them."""
         return self._core.text
+
+    def to_toml(self) -> str:
+        """Returns the scenario as TOML text, with the values that were replaced. Comments are lost if there are any."""
+        return self._core.to_toml()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Returns the scenario as a dict, with the values that were replaced, as the constructor takes it."""
+        return tomllib.loads(self.to_toml())
 
     @property
     def origin(self) -> str:
@@ -117,6 +136,7 @@ class Scenario:
         Raises:
             SolverError: if the solver gives up and ``check`` is True; the error has the run up to there.
             ScenarioError: if the programs of the walls are inconsistent.
+            KeyboardInterrupt: on Ctrl-C.
         """
         return checked(Run(self._core.run(), lambda: self), check)
 
@@ -127,14 +147,14 @@ class Scenario:
             keys: paths of keys whose values are numbers, such as ``"material.yield_stress"``.
 
         Raises:
-            ScenarioError: if the scenario lacks a key, or a key takes no number.
+            ScenarioError: if the scenario lacks a key, a key takes no number, or a key is listed twice.
         """
         from .prepared import Prepared
 
         return Prepared(self, keys)
 
     def _identity(self) -> tuple[str, str, tuple[str, ...]]:
-        return (self.text, os.path.abspath(self.origin), tuple(self.overrides))
+        return (self.text, self._place, tuple(self.overrides))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
@@ -145,7 +165,7 @@ class Scenario:
         return hash(self._identity())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # The absolute path of the origin lets another process find the files that the scenario names.
+        # With the absolute path of the origin another process finds the files that the scenario names.
         return (_restored, self._identity())
 
     def __repr__(self) -> str:
@@ -157,24 +177,25 @@ def _restored(text: str, origin: str, overrides: tuple[str, ...]) -> Scenario:
     return Scenario(text, origin=origin, overrides=overrides)
 
 
-class _Texts:
-    """A run as the texts of its files, with the attributes of ``_core.Run``."""
+class _Record:
+    """A run that was read, with the attributes of ``_core.Run``."""
 
-    def __init__(self, texts: dict[str, str]) -> None:
-        info = json.loads(texts["run.json"])
-        self.texts = texts
+    def __init__(self, text: str, history: _core.Table, events: _core.Table) -> None:
+        info = json.loads(text)
+        self._text = text
+        self.history = history
+        self.events = events
         self.status: str = info["status"]
         self.message: str = info["message"]
         self.limit: str = info["limit"] or ""
         self.warnings: list[str] = info["warnings"]
-        self.history = _of_text(texts["history.csv"])._core
-        self.events = _of_text(texts["events.csv"])._core
 
     def json(self) -> str:
-        return self.texts["run.json"]
+        return self._text
 
     def save(self, folder: str) -> None:
-        _core.save_run(folder, self.texts)
+        texts = (self.history.csv(), self.events.csv(), self._text)
+        _core.save_run(folder, dict(zip(_FILES, texts)))
 
 
 class Run:
@@ -184,7 +205,7 @@ class Run:
     A run can be pickled and copied.
     """
 
-    def __init__(self, core: Union[_core.Run, _Texts], scenario: Callable[[], Scenario]) -> None:
+    def __init__(self, core: Union[_core.Run, _Record], scenario: Callable[[], Scenario]) -> None:
         self._core = core
         self._scenario = scenario
         self._history = Table(core.history)
@@ -202,21 +223,21 @@ class Run:
             ValueError: if ``run.json`` is not what a run leaves.
             RuntimeError: if a table of the run is none.
         """
-        texts = {}
-        for name in _FILES:
-            with open(os.path.join(folder, name), encoding="utf-8") as file:
-                texts[name] = file.read()
+        history, events = (Table.read_csv(os.path.join(folder, name)) for name in _FILES[:2])
+        file = os.path.join(folder, _FILES[2])
         try:
-            recorded = json.loads(texts["run.json"])["scenario"]
-            text, origin, overrides = recorded["text"], f"{recorded['name']}.toml", recorded["overrides"]
-            core = _Texts(texts)
+            with open(file, encoding="utf-8") as stream:
+                text = stream.read()
+            core = _Record(text, history._core, events._core)
+            recorded = json.loads(text)["scenario"]
+            source = recorded["text"], f"{recorded['name']}.toml", tuple(recorded["overrides"])
         except (KeyError, TypeError, json.JSONDecodeError) as error:
-            raise ValueError(f"{os.path.join(folder, 'run.json')}: not what a run leaves") from error
-        return cls(core, lambda: Scenario(text, origin=origin, overrides=overrides))
+            raise ValueError(f"{file}: not what a run leaves") from error
+        return cls(core, _Source(*source))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        texts = {"history.csv": self.history._core.csv(), "events.csv": self.events._core.csv(), "run.json": self._core.json()}
-        return (_of_texts, (texts, self.scenario))
+        scenario = self._scenario if isinstance(self._scenario, _Source) else _Source(*self.scenario._identity())
+        return (_of_parts, (self._core.json(), self.history, self.events, scenario))
 
     @property
     def scenario(self) -> Scenario:
@@ -241,7 +262,7 @@ class Run:
     @property
     def warnings(self) -> list[str]:
         """Warnings, a sentence each."""
-        return self._core.warnings
+        return list(self._core.warnings)
 
     @property
     def history(self) -> Table:
@@ -274,6 +295,16 @@ class Run:
 
     def __contains__(self, column: object) -> bool:
         return column in self._history
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        """Yields the rows of the history, as a :class:`monograin.Table` does."""
+        return iter(self._history)
+
+    def keys(self) -> list[str]:
+        """Returns the names of the history's columns, so that ``dict(run)`` has them as arrays."""
+        return self.columns
+
+    _ipython_key_completions_ = keys
 
     def __getitem__(self, column: str) -> NDArray[Any]:
         """Returns a column of the history, see :meth:`monograin.Table.__getitem__`."""
@@ -328,8 +359,9 @@ class Run:
 
         Raises:
             RuntimeError: if the model has no profile, the run ends before the instant, or no contact is closed then.
+            ScenarioError: if the scenario of a loaded run names files that are not in the working directory.
         """
-        return Table(self.scenario._core.profile(time))
+        return Table(self.scenario._core.profile(float(time)))
 
     def __repr__(self) -> str:
         why = f" ({self.message})" if self.message else ""
@@ -338,8 +370,20 @@ class Run:
         return f"<Run {self.status}{why}: {len(self)} rows, {len(self.events)} events{warned}>"
 
 
-def _of_texts(texts: dict[str, str], scenario: Scenario) -> Run:
-    return Run(_Texts(texts), lambda: scenario)
+@dataclass(frozen=True)
+class _Source:
+    """What a scenario is made of. It is made when it is asked for."""
+
+    text: str
+    origin: str
+    overrides: tuple[str, ...]
+
+    def __call__(self) -> Scenario:
+        return _restored(self.text, self.origin, self.overrides)
+
+
+def _of_parts(text: str, history: Table, events: Table, scenario: _Source) -> Run:
+    return Run(_Record(text, history._core, events._core), scenario)
 
 
 def checked(run: Run, check: bool) -> Run:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import warnings
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, _toml
-from .runs import Path, Run
+from .runs import Path, Run, Scenario
 from .tables import Table
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def sweep(
 
     Args:
         source: a sweep file (TOML), or a dict of the same structure, whose file names are relative to the current
-            folder.
+            folder. In a dict, the scenario may be a :class:`Scenario` or a dict of its own.
         folder: folder of the results; if None ``runs/NAME``, for a dict ``runs/sweep``.
         threads: number of threads; 0: one for each core.
         shard: (i, n) to do only every n-th run, from the i-th on. The last of n processes that share a folder merges
@@ -159,7 +160,7 @@ class Calibration:
     @property
     def info(self) -> dict[str, Any]:
         """Content of ``calibration.json``: parameters, statistics, minima, data."""
-        return self._info
+        return copy.deepcopy(self._info)
 
     def __str__(self) -> str:
         return self._core.text
@@ -175,8 +176,10 @@ def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Opti
 
     Args:
         source: a calibration file (TOML), or a dict of the same structure, whose file names are relative to the current
-            folder. In a dict, the ``file`` of data may also be the data: a :class:`Table`, a ``pandas.DataFrame``, or a
-            dict from headings to arrays, such as ``{"displacement[mm]": d, "force[N]": f}``. A nan is a missing cell.
+            folder. In a dict, the scenario may be a :class:`Scenario`, and the ``file`` of data may also be the data: a
+            :class:`Run` or :class:`Table`, a ``pandas.DataFrame``, or a dict from headings to arrays, such as
+            ``{"displacement[mm]": d, "force[N]": f}``. A nan is a missing cell; columns of words are left out. A
+            DataFrame of :meth:`Table.to_pandas` has its units.
         folder: folder for the files that the program writes; None: none are written.
         confidence: level of the intervals in (0, 1); None: the level of the file, or 0.95.
 
@@ -185,6 +188,8 @@ def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Opti
         ValueError: for data whose columns are not of equal length.
         KeyboardInterrupt: on Ctrl-C; all files of the folder are written then, or none.
     """
+    if confidence is not None and not 0.0 < confidence < 1.0:
+        raise ValueError("confidence: expected a number in (0, 1)")
     level = float("nan") if confidence is None else confidence
     complete, data = _data_as_texts(source)
     core = _core.calibrate(*_named_text(complete, "calibration.toml"), data, _folder(folder), level)
@@ -386,8 +391,30 @@ def _folder(folder: Optional[Path]) -> str:
 def _named_text(source: Source, name: str) -> tuple[str, Optional[str]]:
     """Returns the name of a study in messages, and its text; None for a file."""
     if isinstance(source, Mapping):
-        return name, _toml.document(source)
+        return name, _toml.document(_with_texts_of_scenarios(source))
     return os.fspath(source), None
+
+
+def _with_texts_of_scenarios(value: Any) -> Any:
+    """Returns a study in whose place of a :class:`Scenario` stands its dict."""
+    if isinstance(value, Scenario):
+        return _in_any_folder(value)
+    if isinstance(value, Mapping):
+        return {key: _with_texts_of_scenarios(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_with_texts_of_scenarios(entry) for entry in value]
+    return value
+
+
+def _in_any_folder(scenario: Scenario) -> dict[str, Any]:
+    """Returns a scenario as a dict that names its files by their absolute paths."""
+    content = scenario.to_dict()
+    folder = os.path.dirname(scenario._place)
+    options = content.get(scenario.model, {})
+    for key, value in options.items():
+        if isinstance(value, str) and os.path.isfile(os.path.join(folder, value)):
+            options[key] = os.path.join(folder, value)
+    return content
 
 
 def _data_as_texts(source: Source) -> tuple[Source, dict[str, str]]:
@@ -409,15 +436,26 @@ def _data_as_texts(source: Source) -> tuple[Source, dict[str, str]]:
     return source, texts
 
 
-def _csv(data: Union[Table, Mapping[str, Any], pandas.DataFrame]) -> str:
+def _csv(data: Union[Run, Table, Mapping[str, Any], pandas.DataFrame]) -> str:
     """Returns columns as a CSV text."""
-    if isinstance(data, Table):
-        return data._core.csv()
-    columns = [np.asarray(data[heading], dtype=float) for heading in data]
-    if any(column.shape != columns[0].shape or column.ndim != 1 for column in columns):
-        raise ValueError(f"data of shapes {[column.shape for column in columns]}; expected columns of equal length")
-    rows = (["" if np.isnan(value) else repr(float(value)) for value in row] for row in zip(*columns))
-    headings = ['"' + str(heading).replace('"', '""') + '"' for heading in data]
+    if isinstance(data, (Run, Table)):
+        return _history(data)._core.csv()
+    units = getattr(data, "attrs", {}).get("units", {})
+    columns = {}
+    for heading in data:
+        values = np.asarray(data[heading])
+        if values.dtype.kind in "OUS":  # numbers of an array of objects are numbers
+            try:
+                values = values.astype(float)
+            except ValueError:
+                continue
+        unit = units.get(heading, "")
+        columns[f"{heading}[{unit}]" if unit else str(heading)] = values.astype(float)
+    shapes = [values.shape for values in columns.values()]
+    if any(shape != shapes[0] or len(shape) != 1 for shape in shapes):
+        raise ValueError(f"data of shapes {shapes}; expected columns of equal length")
+    rows = (["" if np.isnan(value) else repr(float(value)) for value in row] for row in zip(*columns.values()))
+    headings = ['"' + heading.replace('"', '""') + '"' for heading in columns]
     return "".join(",".join(cells) + "\n" for cells in (headings, *rows))
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import errno
 import os
-import tempfile
 from typing import TYPE_CHECKING, Any, Iterator, Union
 
 import numpy as np
@@ -22,7 +22,7 @@ class Table:
     from the name of a column to its value.
 
     A column of numbers is a read-only view of the table's memory: nothing is copied, and the view stays valid after the
-    table is deleted. Undefined values are nan. A column of words is an array of str.
+    table is deleted. Undefined values are nan. A column of words is a read-only array of str.
     """
 
     def __init__(self, core: _core.Table) -> None:
@@ -31,12 +31,18 @@ class Table:
 
     @classmethod
     def read_csv(cls, file: Union[str, os.PathLike[str]]) -> Table:
-        """Reads a CSV file, such as the ``history.csv`` of a run.
+        """Reads a CSV file, such as the ``history.csv`` of a run. An empty cell among numbers is nan.
+
+        Numbers stay in the units of their headings, which are SI in files of the program.
 
         Raises:
+            FileNotFoundError: if there is no such file.
             RuntimeError: if the file is not a table; the message has the position of the fault.
         """
-        return cls(_core.read_csv(os.fspath(file)))
+        name = os.fspath(file)
+        if not os.path.exists(name):
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name)
+        return cls(_core.read_csv(name))
 
     @property
     def columns(self) -> list[str]:
@@ -45,7 +51,10 @@ class Table:
 
     @property
     def units(self) -> dict[str, str]:
-        """Unit of every column by its name: SI, ``"-"`` for a pure number, empty for words and counters."""
+        """Unit of every column by its name: ``"-"`` for a pure number, empty for words and counters.
+
+        Units of the program's own tables are SI.
+        """
         return self._core.units
 
     @property
@@ -63,7 +72,7 @@ class Table:
         """Returns a column, by its name (``"axial.force"``) or heading (``"axial.force[N]"``).
 
         Returns:
-            Array of shape (rows,): numbers in SI units, or words.
+            Array of shape (rows,): numbers in the unit of the column, or words.
 
         Raises:
             KeyError: for an unknown name; the message suggests the nearest column.
@@ -73,11 +82,19 @@ class Table:
             labels = self._core.labels(column)
             if not labels:
                 return values
-            self._words[column] = np.asarray(labels, dtype=str)[values.astype(np.intp)]
+            words = np.asarray(labels, dtype=str)[values.astype(np.intp)]
+            words.flags.writeable = False
+            self._words[column] = words
         return self._words[column]
 
+    def keys(self) -> list[str]:
+        """Returns the names of the columns, so that ``dict(table)`` has them as arrays."""
+        return self.columns
+
+    _ipython_key_completions_ = keys
+
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_of_text, (self._core.csv(),))
+        return (_of_columns, (self._core.header, self._core.parts()))
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         names = self.columns
@@ -85,23 +102,20 @@ class Table:
         return (dict(zip(names, row)) for row in zip(*values))
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Returns a copy as a ``pandas.DataFrame`` with the same columns.
+        """Returns a copy as a ``pandas.DataFrame`` with the same columns; its ``attrs["units"]`` are :attr:`units`.
 
         Raises:
             ImportError: if pandas is not installed.
         """
         import pandas
 
-        return pandas.DataFrame({name: self[name].copy() for name in self.columns})
+        frame = pandas.DataFrame({name: self[name].copy() for name in self.columns})
+        frame.attrs["units"] = self.units
+        return frame
 
     def __repr__(self) -> str:
         return f"<Table of {len(self)} rows: {', '.join(self.columns)}>"
 
 
-def _of_text(text: str) -> Table:
-    """Returns the table in a text of CSV."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = os.path.join(folder, "table.csv")
-        with open(file, "w", encoding="utf-8") as output:
-            output.write(text)
-        return Table.read_csv(file)
+def _of_columns(header: list[tuple[str, str]], columns: list[_core.ColumnParts]) -> Table:
+    return Table(_core.table_of(header, columns))

@@ -45,7 +45,9 @@ struct History::Content {
     const std::lock_guard lock(mutex);
     if (!columns[k]) {
       const auto& [name, unit, labels] = table->columns()[k];
-      columns[k] = std::make_unique<const Column>(Column{name, unit, labels, table->column(name)});
+      std::vector<double> values(table->row_count());
+      for (std::size_t row = 0; row < values.size(); ++row) values[row] = table->at(row, k);
+      columns[k] = std::make_unique<const Column>(Column{name, unit, labels, std::move(values)});
     }
     return *columns[k];
   }

@@ -118,8 +118,12 @@ PreparedScenario::PreparedScenario(const Scenario& scenario, std::vector<std::st
   const CheckedScenario all_right = checked(scenario);
   ScenarioTemplate prepared({.text = all_right.text, .origin = scenario.origin()}, all_right.overrides);
   FaultList faults;
-  for (const std::string& key : keys) {
-    if (const std::string problem = prepared.problem_of_number(key); !problem.empty()) faults.add({key}, problem);
+  for (auto key = keys.begin(); key != keys.end(); ++key) {
+    if (std::find(keys.begin(), key, *key) != key) {
+      faults.add({*key}, "the key is listed twice; expected it once");
+    } else if (const std::string problem = prepared.problem_of_number(*key); !problem.empty()) {
+      faults.add({*key}, problem);
+    }
   }
   faults.throw_if_any();
   content_ = std::make_shared<const Content>(Content{std::move(keys), std::move(prepared)});
@@ -127,12 +131,12 @@ PreparedScenario::PreparedScenario(const Scenario& scenario, std::vector<std::st
 
 const std::vector<std::string>& PreparedScenario::keys() const noexcept { return content_->keys; }
 
-RunResult PreparedScenario::run(std::span<const double> values) const {
+RunResult PreparedScenario::run(std::span<const double> values, const RunOptions& options) const {
   if (values.size() != keys().size()) {
     throw std::invalid_argument(
         fmt::format("{} values for {} keys; expected one for each", values.size(), keys().size()));
   }
-  return RunResult(std::make_shared<const Run>(run_scenario(content_->with(values))));
+  return RunResult(std::make_shared<const Run>(run_scenario(content_->with(values), interruptible(options.stop))));
 }
 
 MapResult PreparedScenario::map(std::span<const double> samples, std::span<const std::string> formulas,

@@ -32,8 +32,8 @@ void RunResult::save(const std::filesystem::path& folder) const {
   write_run(run, staged);
 }
 
-RunResult run(const Scenario& scenario) {
-  return RunResult(std::make_shared<const Run>(run_scenario(checked(scenario))));
+RunResult run(const Scenario& scenario, const RunOptions& options) {
+  return RunResult(std::make_shared<const Run>(run_scenario(checked(scenario), interruptible(options.stop))));
 }
 
 }  // namespace monograin

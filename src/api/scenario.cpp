@@ -24,8 +24,32 @@ Scenario Scenario::parse(std::string text, std::string origin, std::vector<std::
   return scenario;
 }
 
+namespace {
+
+/// True if the path of one override may lie within that of another, or both may name entries of one array. Their order
+/// then counts.
+bool may_meet(std::string_view a, std::string_view b) {
+  const auto array = [](std::string_view path) { return path.substr(0, path.find('[')); };
+  const bool are_entries = a.find('[') != a.npos && b.find('[') != b.npos && array(a) == array(b);
+  return are_entries || a.starts_with(b) || b.starts_with(a);
+}
+
+}  // namespace
+
+void append_override(std::vector<std::string>& overrides, std::string text) {
+  const auto path = [](std::string_view entry) { return entry.substr(0, entry.find('=')); };
+  for (auto earlier = overrides.rbegin(); earlier != overrides.rend(); ++earlier) {
+    if (path(*earlier) == path(text)) {
+      overrides.erase(std::next(earlier).base());
+      break;
+    }
+    if (may_meet(path(*earlier), path(text))) break;
+  }
+  overrides.push_back(std::move(text));
+}
+
 Scenario& Scenario::set_value(std::string_view key, std::string_view value) {
-  overrides_.push_back(fmt::format("{}={}", key, value));
+  append_override(overrides_, fmt::format("{}={}", key, value));
   return *this;
 }
 

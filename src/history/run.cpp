@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <iterator>
 #include <span>
 
@@ -14,6 +15,7 @@
 #include "history/sensitivities.hpp"
 #include "history/wall_checks.hpp"
 #include "scenario/remarks.hpp"
+#include "system/wrapped_system.hpp"
 
 namespace monograin {
 namespace {
@@ -33,6 +35,39 @@ class Stopwatch {
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Ends a run from within: whatever its integrator, it evaluates the system again and again.
+class Interruptible final : public WrappedSystem {
+ public:
+  Interruptible(std::unique_ptr<HybridSystem> system, std::function<bool()> stop)
+      : WrappedSystem(std::move(system)), stop_(std::move(stop)) {}
+
+  void rates(double xi, View y, State dy) override {
+    ask();
+    WrappedSystem::rates(xi, y, dy);
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    ask();
+    WrappedSystem::residual(xi, y, dy, res);
+  }
+  void solve(double xi, State y) override {
+    ask();
+    WrappedSystem::solve(xi, y);
+  }
+  void observe(double xi, View y, State values) override {
+    ask();
+    WrappedSystem::observe(xi, y, values);
+  }
+
+ private:
+  void ask() {
+    constexpr int k_between = 64;  // evaluations, so that asking takes no time
+    if (++evaluations_ % k_between == 0 && stop_()) throw RunInterrupted();
+  }
+
+  std::function<bool()> stop_;
+  int evaluations_ = 0;
 };
 
 /// Keys of `[material]` and their symbols in the header of a history.
@@ -126,6 +161,13 @@ RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances
                      ForwardSensitivities& sensitivities, const std::vector<Column>& columns) {
   Recorder recorder(*scene.system, columns);
   return record_with(recorder, scene, integrator, tolerances, output, &sensitivities);
+}
+
+SystemWrapper interruptible(const std::function<bool()>& stop) {
+  if (!stop) return {};
+  return [stop](std::unique_ptr<HybridSystem> system) -> std::unique_ptr<HybridSystem> {
+    return std::make_unique<Interruptible>(std::move(system), stop);
+  };
 }
 
 Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) {

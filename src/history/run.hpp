@@ -9,6 +9,7 @@
 
 #include "engine/drive.hpp"
 #include "history/table.hpp"
+#include "monograin/status.hpp"
 #include "monograin/version.hpp"
 #include "scenario/scenario.hpp"
 
@@ -69,6 +70,10 @@ struct Sensitivity {
   bool is_forward = false;  ///< true: integrated with the run; false: differences of two more runs
   std::string why;          ///< reason for the method
 };
+
+/// Returns a wrapper that asks `stop` now and then, and ends the run by RunInterrupted once it is true; none if `stop`
+/// is empty.
+[[nodiscard]] SystemWrapper interruptible(const std::function<bool()>& stop);
 
 /// A run with everything that its files show.
 struct Run {

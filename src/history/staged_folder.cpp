@@ -159,17 +159,16 @@ void write_list(const fs::path& folder) {
 void check_target(const fs::path& target, const std::string& marker) {
   if (fs::exists(fs::symlink_status(target / marker))) {
     if (is_own_marker(target, marker)) return;
-    refuse(target,
-           fmt::format("its {} is none that monograin has written, and would be replaced; choose another folder "
-                       "with -o",
-                       marker));
+    refuse(
+        target,
+        fmt::format("its {} is none that monograin has written, and would be replaced; choose another folder", marker));
   }
   const bool is_empty = std::ranges::all_of(fs::directory_iterator(target), [](const fs::directory_entry& entry) {
     return is_staged_name(entry.path().filename().string(), k_staged_infix);
   });
   if (!is_empty) {
     refuse(target, fmt::format("holds files but no earlier result of this kind (no {}), some of which a result might "
-                               "replace; choose another folder with -o",
+                               "replace; choose another folder",
                                marker));
   }
 }

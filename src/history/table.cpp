@@ -224,14 +224,15 @@ class CsvText {
   }
 
   void fill_column(std::size_t column, std::vector<double>& values) {
-    for (std::size_t k = column; k < cells_.size(); k += columns_.size()) {
+    bool has_numbers = false;
+    bool has_words = false;
+    for (std::size_t k = column; k < cells_.size() && !has_words; k += columns_.size()) {
       const auto number = parsed_number(cells_[k]);
-      if (!number) {
-        fill_words(column, values);
-        return;
-      }
-      values[k] = *number;
+      has_numbers = has_numbers || number;
+      has_words = !number && !cells_[k].empty();
+      values[k] = number.value_or(std::numeric_limits<double>::quiet_NaN());
     }
+    if (has_words || !has_numbers) fill_words(column, values);
   }
 
   void fill_words(std::size_t column, std::vector<double>& values) {

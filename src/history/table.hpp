@@ -98,7 +98,8 @@ void append_csv_number(std::string& text, double value, int digits = k_all_digit
 
 /// Reads a file with csv_text(), or any CSV with one row of headings and optional `#` lines.
 /// Blank lines, blanks around cells, a byte order mark and CRLF line ends are accepted; quotes have no meaning. A
-/// column with a cell that is not a number becomes a column of words (an empty cell is the empty word).
+/// column with a cell that is neither a number nor empty is one of words, as is one without numbers. An empty cell is
+/// undefined among numbers (NaN) and the empty word among words.
 /// @throws std::runtime_error `file:line:column: message` for a missing or empty file, ragged rows, no row of headings,
 /// two columns with the same heading, a file of more than 1 GiB or 100 million cells, a line of more than 1 MiB
 [[nodiscard]] Table read_csv(const std::filesystem::path& file, FileKind kind = FileKind::any);

@@ -68,14 +68,31 @@ std::string with_override(const std::string& text, const std::string& key_and_va
   return with_values(text, {*edit});
 }
 
+namespace {
+
+std::string text_of(const toml::table& table) {
+  std::ostringstream text;
+  text.exceptions(std::ios::badbit);  // an allocation that fails must not cut the text
+  text << toml::toml_formatter{table} << '\n';
+  return text.str();
+}
+
+}  // namespace
+
 std::string text_of_table(std::string_view document, std::string_view key, const std::string& origin) {
   const toml::table root = parse_document(document, origin);
   const toml::table* table = root[key].as_table();
   if (table == nullptr) throw_fault({origin}, fmt::format("there is no table [{}]", key));
-  std::ostringstream text;
-  text.exceptions(std::ios::badbit);  // an allocation that fails must not cut the text
-  text << toml::toml_formatter{*table} << '\n';
-  return text.str();
+  return text_of(*table);
+}
+
+std::string text_with_overrides(const std::string& text, std::span<const std::string> overrides) {
+  if (overrides.empty()) return text;
+  toml::table root = parse_document(text, {});
+  FaultList faults;
+  for (const std::string& change : overrides) apply_override(root, change, faults);
+  faults.throw_if_any();
+  return text_of(root);
 }
 
 }  // namespace monograin

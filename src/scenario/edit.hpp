@@ -1,6 +1,7 @@
 /// Edits of single values in the text of a scenario. The rest of the text stays as its author wrote it.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,10 @@ struct TextEdit {
 /// The text with a `key=value` text, as of `--set`, written into it.
 /// @throws std::runtime_error if the text has no place for it
 [[nodiscard]] std::string with_override(const std::string& text, const std::string& key_and_value);
+
+/// The text with `key=value` texts, as of `--set`, in it. Its comments are lost if there are any such texts.
+/// @throws ScenarioError for a path that the text cannot follow, and for a value that is not TOML
+[[nodiscard]] std::string text_with_overrides(const std::string& text, std::span<const std::string> overrides);
 
 /// A table of a larger document as a document of its own; comments are lost.
 /// @throws ScenarioError if there is no such table

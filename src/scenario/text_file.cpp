@@ -123,8 +123,7 @@ void expect_own_file(const fs::path& file, const fs::path& witness) {
   const std::string text = read_text_file(witness, k_longest).text;
   if (std::ranges::any_of(k_own, [&](std::string_view words) { return text.starts_with(words); })) return;
   throw std::runtime_error(
-      fmt::format("{}: monograin has not written this file and would replace it; move it away, or choose another "
-                  "place with -o",
+      fmt::format("{}: monograin has not written this file and would replace it; move it away, or choose another place",
                   file.string()));
 }
 

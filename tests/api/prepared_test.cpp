@@ -72,6 +72,11 @@ TEST(PreparedScenario, RefusesKeysThatHoldNoNumber) {
   }
 }
 
+TEST(PreparedScenario, RefusesAKeyThatIsListedTwice) {
+  const std::vector<std::string> keys(2, "material.yield_stress");
+  EXPECT_THROW(static_cast<void>(PreparedScenario(ready_scenario("die.toml"), keys)), ScenarioError);
+}
+
 TEST(PreparedScenario, RefusesValuesThatAreNotAdmissible) {
   const PreparedScenario prepared(ready_scenario("die.toml"), {"material.poisson_ratio"});
   EXPECT_THROW(static_cast<void>(prepared.run(std::vector{0.7})), ScenarioError);

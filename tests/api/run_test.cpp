@@ -50,6 +50,42 @@ TEST(RunResult, NamesTheLimitThatStoppedIt) {
   EXPECT_GT(result.history.row_count(), 0U) << "curves up to there are kept";
 }
 
+TEST(Run, EndsWhenItIsAskedToAndIsTheSameOtherwise) {
+  for (const char* const name : {"die.toml", "cel.toml", "nonlocal.toml"}) {
+    Scenario scenario = ready_scenario(name);
+    scenario.set("output.points", 20);
+    for (const char* const integrator : {"auto", "cvode-bdf", "ida", "odeint-dopri5"}) {
+      scenario.set("numerics.integrator", integrator);
+      int asked = 0;
+      const RunResult plain = run(scenario);
+      const RunResult watched = run(scenario, {.stop = [&asked] { return ++asked < 0; }});
+      EXPECT_GT(asked, 0) << name;
+      EXPECT_EQ(watched.integrator, plain.integrator) << name;
+      for (const std::string_view column : plain.history.names()) {
+        const auto one = plain.history[column];
+        const auto other = watched.history[column];
+        EXPECT_TRUE(std::ranges::equal(one, other, [](double a, double b) { return a == b || (a != a && b != b); }))
+            << name << ", " << integrator << ", " << column;
+      }
+      EXPECT_THROW(static_cast<void>(run(scenario, {.stop = [] { return true; }})), RunInterrupted) << name;
+    }
+  }
+}
+
+TEST(History, ThatWasMovedFromStaysAsItWas) {
+  History from = run(ready_scenario("hertz.toml")).history;
+  const std::size_t rows = from.row_count();
+  const History to = std::move(from);
+  EXPECT_EQ(to.row_count(), rows);
+  EXPECT_EQ(from.row_count(), rows);  // NOLINT(bugprone-use-after-move)
+}
+
+TEST(History, TellsColumnsOfOneNameApartByTheirUnits) {
+  const History history({{"a", "m", {}, {1.0}}, {"a", "mm", {}, {2.0}}});
+  EXPECT_EQ(history["a[m]"].front(), 1.0);
+  EXPECT_EQ(history["a[mm]"].front(), 2.0);
+}
+
 TEST(RunResult, OutlivesItsScenarioAndSharesItsColumns) {
   std::span<const double> force;
   History history;

@@ -42,6 +42,17 @@ std::string faults_of(const Scenario& scenario) {
   return text;
 }
 
+TEST(Scenario, HoldsOneValueOfAKeyThatIsSetAgainAndAgain) {
+  Scenario scenario = pressed_sphere();
+  const std::size_t count = scenario.overrides().size();
+  for (int k = 1; k <= 100; ++k) scenario.set("particle.radius", 0.01 * k).set("material.poisson_ratio", 0.3);
+  EXPECT_EQ(scenario.overrides().size(), count);
+  EXPECT_EQ(run(scenario).history["axial.displacement"].back(), 0.05);
+  // A table takes the place of the keys in it, so that their order counts.
+  scenario.set("loading.steps[0].duration", 2).set("loading.steps[0]", "x").set("loading.steps[0].duration", 3);
+  EXPECT_EQ(scenario.overrides().size(), count + 2);
+}
+
 TEST(Scenario, ThatIsSetKeyByKeyRuns) {
   const Scenario scenario = pressed_sphere();
   EXPECT_EQ(faults_of(scenario), "");

@@ -99,6 +99,16 @@ TEST(Table, KeepsALineBreakOutOfTheHeader) {
   EXPECT_EQ(text_of(table), "# title: two lines\nx\n");
 }
 
+TEST_F(CsvFile, HasNoValueWhereACellAmongNumbersIsEmpty) {
+  const Table table = read("x[m],word,nothing\n1,,\n,a,\n");
+  EXPECT_FALSE(table.columns()[0].holds_words());
+  EXPECT_EQ(table.at(0, 0), 1.0);
+  EXPECT_TRUE(std::isnan(table.at(1, 0)));
+  EXPECT_EQ(table.word(0, 1), "");
+  EXPECT_EQ(table.word(1, 1), "a");
+  EXPECT_EQ(table.word(1, 2), "") << "a column without numbers";
+}
+
 TEST(Table, RefusesWordsThatWouldBreakTheRows) {
   Table table = one_column({"top,left"});
   table.append(std::array{0.0});

@@ -347,3 +347,15 @@ def test_an_interrupt_stops_a_calibration(tmp_path):
     )
     assert output == "stopped"
     assert seconds < 10.0
+
+
+def test_a_key_is_listed_once_and_keys_are_texts():
+    with pytest.raises(mg.ScenarioError, match="twice"):
+        mg.scenario("die").prepare(["material.yield_stress", "material.yield_stress"])
+    with pytest.raises(TypeError, match="keys"):
+        mg.scenario("die").prepare([1])
+
+
+def test_values_of_a_run_are_one_row(prepared, samples):
+    with pytest.raises(ValueError, match="shape"):
+        prepared.run(samples[:1])

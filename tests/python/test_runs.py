@@ -7,6 +7,9 @@ import gc
 import json
 import pathlib
 import pickle
+import subprocess
+import sys
+import textwrap
 
 import numpy as np
 import pytest
@@ -325,3 +328,115 @@ def test_a_profile_beyond_the_run_is_an_error(die):
         die.run().profile(99.0)
     with pytest.raises(RuntimeError, match="has no profile"):
         mg.scenario("packing").run().profile(0.5)
+
+
+def test_a_scenario_stays_the_same_in_another_working_directory(tmp_path, monkeypatch):
+    text = mg.scenario("hollomon").text
+    source = mg.scenario_folder() / "hollomon-pressure.csv"
+    for folder, factor in (("a", 1.0), ("b", 2.0)):
+        (tmp_path / folder).mkdir()
+        table = mg.Table.read_csv(source)
+        x, pressure = (table[name] for name in table.columns)
+        lines = [f"{at!r},{factor * value!r}\n" for at, value in zip(x.tolist(), pressure.tolist())]
+        headings = ",".join(f"{name}[{unit}]" for name, unit in table.units.items())
+        (tmp_path / folder / source.name).write_text(headings + "\n" + "".join(lines))
+    monkeypatch.chdir(tmp_path / "a")
+    scenario = mg.Scenario(text)
+    largest, name = scenario.run()["axial.force"].max(), hash(scenario)
+    monkeypatch.chdir(tmp_path / "b")
+    assert mg.Scenario(text).run()["axial.force"].max() != largest
+    assert hash(scenario) == name
+    for other in (copy.copy(scenario), scenario.replace({"title": "again"}), pickle.loads(pickle.dumps(scenario))):
+        assert other.run()["axial.force"].max() == largest
+
+
+def test_overrides_of_one_key_do_not_pile_up():
+    scenario = mg.scenario("die")
+    for value in (40e6, 50e6, 60e6):
+        scenario = scenario.replace({"material.yield_stress": value}).replace({"material.youngs_modulus": 20.0 * value})
+    assert scenario.overrides == ["material.yield_stress=60000000.0", "material.youngs_modulus=1200000000.0"]
+    # A table takes the place of its keys, so that the order counts.
+    steps = [{"displacement": "0.1 R0", "duration": 1.0}]
+    scenario = mg.scenario("die").replace({"loading.steps[0].duration": 2.0}).replace({"loading.steps": steps})
+    assert scenario.replace({"loading.steps[0].duration": 3.0}).run()["time"][-1] == 3.0
+
+
+def test_a_changed_scenario_can_be_written_and_read_again():
+    changed = mg.scenario("die").replace({"material.yield_stress": "30 MPa"})
+    expected = changed.run()["axial.force"]
+    assert "30 MPa" in changed.to_toml()
+    assert_array_equal(mg.Scenario(changed.to_toml()).run()["axial.force"], expected)
+    assert_array_equal(mg.Scenario(changed.to_dict()).run()["axial.force"], expected)
+
+
+def test_the_name_of_a_file_is_no_text_of_a_scenario(tmp_path):
+    for name in (tmp_path / "a.toml", "a.toml"):
+        with pytest.raises(TypeError, match="Scenario.load"):
+            mg.Scenario(name)
+    with pytest.raises(TypeError, match="overrides"):
+        mg.Scenario(mg.scenario("die").text, overrides="title='x'")
+
+
+def test_nothing_that_a_run_hands_out_changes_it(tmp_path):
+    run = mg.scenario("die").run()
+    with pytest.raises(ValueError):
+        run["axial.regime"][0] = "changed"
+    run.save(tmp_path / "saved")
+    loaded = mg.Run.load(tmp_path / "saved")
+    for each in (run, loaded):
+        count = len(each.warnings)
+        each.warnings.append("changed")
+        assert len(each.warnings) == count
+
+
+def test_a_run_is_a_mapping_of_columns_and_yields_rows():
+    run = mg.scenario("hertz").run()
+    assert list(dict(run)) == run.columns
+    rows = list(run)
+    assert len(rows) == len(run)
+    assert rows[-1]["axial.force"] == run["axial.force"][-1]
+    assert run.to_pandas().attrs["units"] == run.units
+
+
+def test_a_copied_or_pickled_run_is_the_same_run(tmp_path):
+    run = mg.scenario("compressible").run()
+    run.save(tmp_path / "saved")
+    # The scenario of a loaded run names a file that is not here; the run can be copied all the same.
+    for origin in (run, mg.Run.load(tmp_path / "saved")):
+        for again in (copy.copy(origin), pickle.loads(pickle.dumps(origin))):
+            assert again.status == run.status and again.info["status"] == run.status
+            assert again.units == run.units and again.history.header == run.history.header
+            for column in run.columns:
+                assert_array_equal(again[column], run[column], err_msg=column)
+            assert again.events["event"].tolist() == run.events["event"].tolist()
+            again.save(tmp_path / "again")
+            for file in ("history.csv", "events.csv"):
+                assert (tmp_path / "again" / file).read_bytes() == (tmp_path / "saved" / file).read_bytes()
+
+
+def test_ctrl_c_ends_a_run(tmp_path):
+    code = """
+        import os, signal, threading, time
+        import monograin as mg
+
+        scenario = mg.scenario("cycles").replace({"output.points": 1_000_000})
+        threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+        start = time.perf_counter()
+        try:
+            scenario.run()
+        except KeyboardInterrupt:
+            print(time.perf_counter() - start)
+        """
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert 0.4 < float(done.stdout) < 2.5
+
+
+def test_an_empty_cell_among_numbers_is_nan_and_units_tell_columns_apart(tmp_path):
+    (tmp_path / "table.csv").write_text("a[m],a[mm],word\n1,,x\n3,4,\n")
+    table = mg.Table.read_csv(tmp_path / "table.csv")
+    assert table["a[m]"].tolist() == [1.0, 3.0]
+    assert np.isnan(table["a[mm]"][0]) and table["a[mm]"][1] == 4.0
+    assert table["word"].tolist() == ["x", ""]
+    with pytest.raises(FileNotFoundError):
+        mg.Table.read_csv(tmp_path / "none.csv")

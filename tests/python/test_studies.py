@@ -118,6 +118,28 @@ def test_a_calibration_takes_a_dict_and_data_in_memory(kind):
     assert found == pytest.approx(expected, rel=1e-9)
 
 
+def test_a_calibration_takes_a_run_and_its_frame():
+    truth = mg.scenario("hertz").run()
+    for data in (truth, truth.to_pandas()):
+        fit = mg.calibrate(
+            {
+                "scenario": mg.scenario("hertz"),
+                "data": {"file": data, "x": "axial.displacement", "y": "axial.force"},
+                "free": {"material.youngs_modulus": {"from": 1e9, "to": 1e12}},
+            }
+        )
+        assert fit.values["material.youngs_modulus"] == pytest.approx(70e9, rel=1e-6)
+        fit.info.clear()
+        assert fit.values
+
+
+def test_a_study_takes_a_changed_scenario_and_finds_the_files_that_it_names(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scenario = mg.scenario("compressible").replace({"output.points": 20})
+    table = mg.sweep({"scenario": scenario, "vary": {"output.points": {"values": [20, 30]}}}, "swept")
+    assert table["end.axial.force"].tolist() == [scenario.run()["axial.force"][-1]] * 2
+
+
 def test_rows_of_data_in_memory_that_are_nan_are_missing_cells():
     csv = mg.scenario_folder() / "calibrate" / "uniaxial.csv"
     displacement, force = np.loadtxt(csv, delimiter=",", skiprows=3, comments="#", unpack=True)

@@ -41,7 +41,8 @@ void add_formula_fault(FaultList& faults, SourceLocation where, const std::strin
   faults.add(where, fmt::format("\"{}\": {}{}", shown(formula), error.what(), advice));
 }
 
-std::vector<PlacedColumn> columns_of_formulas(Reading& reading, const Section& root) {
+std::vector<PlacedColumn> columns_of_formulas(Reading& reading, const Section& root,
+                                              std::span<const std::string> keys) {
   std::vector<PlacedColumn> needed;
   const std::vector<std::string> columns = root.texts("columns");
   const std::vector<std::string> texts = root.texts("results");
@@ -50,7 +51,14 @@ std::vector<PlacedColumn> columns_of_formulas(Reading& reading, const Section& r
     try {
       const Expression formula(texts[i]);
       for (const std::string_view name : formula.names()) {
-        if (is_of_history(name)) needed.push_back({std::string(name.substr(k_place)), where});
+        if (is_of_history(name)) {
+          needed.push_back({std::string(name.substr(k_place)), where});
+        } else if (std::ranges::find(keys, name) == keys.end()) {
+          reading.faults.add(where, fmt::format("\"{}\": '{}' is no column of the results; expected end.COLUMN, the "
+                                                "value at the end of a run, max.COLUMN, its largest, or a varied key",
+                                                shown(texts[i]), shown(name)));
+          continue;
+        }
         if (columns.empty() || std::ranges::find(columns, name) != columns.end()) continue;
         reading.faults.add(where, fmt::format("\"{}\": '{}' is not in columns, which leaves out all others",
                                               shown(texts[i]), shown(name)));

@@ -26,9 +26,11 @@ struct PlacedColumn {
 void add_formula_fault(FaultList& faults, SourceLocation where, const std::string& formula,
                        const ExpressionError& error, const std::string& advice = {});
 
-/// Checks that the formulas in `results` can be read, and name no column that `columns` leaves out.
+/// Checks that the formulas in `results` can be read, name columns of the results, and none that `columns` leaves out.
+/// @param keys  that the sweep varies; each is a column of the results
 /// @return the columns of the histories that the formulas need
-[[nodiscard]] std::vector<PlacedColumn> columns_of_formulas(Reading& reading, const Section& root);
+[[nodiscard]] std::vector<PlacedColumn> columns_of_formulas(Reading& reading, const Section& root,
+                                                            std::span<const std::string> keys);
 
 /// Checks that histories of a scenario have the columns, so that a sweep of long runs does not end with that fault.
 void check_columns(std::span<const PlacedColumn> columns, const CheckedScenario& scenario, FaultList& faults);

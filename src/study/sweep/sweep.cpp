@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <mutex>
@@ -187,7 +188,7 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
 void prepare(const fs::path& folder) {
   if (fs::exists(folder / k_run_marker) || fs::exists(folder / k_written_files)) {
     throw std::runtime_error(
-        fmt::format("{}: holds the result of another command; choose another folder with -o", folder.string()));
+        fmt::format("{}: holds the result of another command; choose another folder", folder.string()));
   }
   for (const char* name : {k_results, k_bands_file, k_sensitivities_file}) {
     expect_own_file(folder / name, folder / name);
@@ -199,6 +200,28 @@ void prepare(const fs::path& folder) {
     }
   }
   prepare_folder(folder);
+}
+
+/// Removes what an earlier sweep of other content has left beside its results: percentiles, indices, figures,
+/// histories. prepare() has found them to be the program's own.
+void remove_leftovers(const Sweep& sweep, const fs::path& folder) {
+  for (const char* name : {k_bands_file, k_sensitivities_file}) {
+    for (const char* extension : {".csv", ".svg", ".gp", ".dat"}) {
+      fs::remove((folder / name).replace_extension(extension));
+    }
+  }
+  const fs::path histories = folder / "histories";
+  if (!fs::is_directory(histories)) return;
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(histories)) {
+    const std::string name = entry.path().stem().string();
+    std::size_t run = 0;
+    const auto read = std::from_chars(name.data(), name.data() + name.size(), run);
+    const bool is_own = entry.path().extension() == ".csv" && read.ptr == name.data() + name.size();
+    if (is_own && (!sweep.keeps_histories || run > sweep.runs.size())) left.push_back(entry.path());
+  }
+  for (const fs::path& file : left) fs::remove(file);
+  if (!sweep.keeps_histories && fs::is_empty(histories)) fs::remove(histories);
 }
 
 /// Lock of the process that merges a folder's journals into results.csv, so that no two do.
@@ -355,6 +378,7 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   Rows rows(sweep, options.folder);
   outcome.runs_missing = sweep.runs.size() - rows.count();
   if (outcome.runs_missing > 0) return outcome;
+  remove_leftovers(sweep, options.folder);
   write_text_file(options.folder / k_results, [&rows](const TextSink& sink) { rows.write(sink); });
   sync_to_disk(options.folder / k_results);
   sync_to_disk(options.folder);

@@ -69,7 +69,9 @@ class SweepReader {
     if (!root.text("calibration").empty()) read_calibrated(root);
     read_constraints(root);
     columns_ = sweep::columns_of_results(reading_, root);
-    std::ranges::move(sweep::columns_of_formulas(reading_, root), std::back_inserter(columns_));
+    std::vector<std::string> varied;
+    for (const Factor& factor : factors_) varied.push_back(factor.key);
+    std::ranges::move(sweep::columns_of_formulas(reading_, root, varied), std::back_inserter(columns_));
     if (root.has("bands")) bands_ = sweep::bands_in(reading_, root);
     if (design_ == "table") {
       read_table(root);

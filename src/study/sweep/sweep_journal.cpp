@@ -62,14 +62,14 @@ SweepRecord::SweepRecord(const fs::path& file, const std::string& digest)
   for (std::string line; std::getline(stream_, line) && !stream_.eof();) {
     const std::optional<std::string_view> payload = payload_of(line);
     const bool is_first = length_ == 0;
-    if (!payload && is_first) fail(file, "is not the journal of a sweep; remove it, or choose another folder with -o");
+    if (!payload && is_first) fail(file, "is not the journal of a sweep; remove it, or choose another folder");
     if (!payload) break;
     std::string_view cells = *payload;
     const std::string_view kind = take_cell(cells);
     if (is_first && (kind != k_journal || cells != digest)) {
       fail(file,
            "is the journal of another sweep, or of this one before its sweep file, its scenario, a table or the "
-           "program changed; remove it to begin anew, or choose another folder with -o");
+           "program changed; remove it to begin anew, or choose another folder");
     }
     if (kind == k_columns) layouts_.emplace_back(cells);
     if (kind == k_row) rows_.push_back({to_count(take_cell(cells)), length_});

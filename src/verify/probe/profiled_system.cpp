@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "system/resolution.hpp"
+#include "system/wrapped_system.hpp"
 
 namespace monograin {
 namespace {
@@ -31,98 +32,45 @@ double clock_cost() {
   return least;
 }
 
-/// Passes every call on to another system.
-class Wrapped : public HybridSystem {
- public:
-  explicit Wrapped(std::unique_ptr<HybridSystem> system) : system_(std::move(system)) {}
-
-  [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return system_->unknowns(); }
-  [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return system_->classes(); }
-  void start(State y) override { system_->start(y); }
-  void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
-    system_->begin_step(ramps, y, log);
-  }
-  [[nodiscard]] std::function<void()> checkpoint() override { return system_->checkpoint(); }
-  void complete(double xi, State y) override { system_->complete(xi, y); }
-  void rates(double xi, View y, State dy) override { system_->rates(xi, y, dy); }
-  void all_rates(double xi, View y, State dy) override { system_->all_rates(xi, y, dy); }
-  void residual(double xi, View y, View dy, State res) override { system_->residual(xi, y, dy, res); }
-  [[nodiscard]] bool is_semi_explicit() const noexcept override { return system_->is_semi_explicit(); }
-  [[nodiscard]] bool has_corrections() const noexcept override { return system_->has_corrections(); }
-  [[nodiscard]] double error_gain() const noexcept override { return system_->error_gain(); }
-  [[nodiscard]] bool is_solvable() const noexcept override { return system_->is_solvable(); }
-  void solve(double xi, State y) override { system_->solve(xi, y); }
-  double leave_singularity(double xi, State y) override { return system_->leave_singularity(xi, y); }
-  [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
-    return system_->closed_quadrature(xi, y);
-  }
-  [[nodiscard]] bool is_quadrature_costly() const noexcept override { return system_->is_quadrature_costly(); }
-  [[nodiscard]] std::span<const Guard> guards() const noexcept override { return system_->guards(); }
-  void guard_values(double xi, View y, State values) override { system_->guard_values(xi, y, values); }
-  std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
-                                std::vector<Event>& log) override {
-    return system_->fire(fired, xi, y, log);
-  }
-  [[nodiscard]] std::span<const Observable> observables() const noexcept override { return system_->observables(); }
-  void observe(double xi, View y, State values) override { system_->observe(xi, y, values); }
-  [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, View y) override {
-    return system_->quantity(quantity, channel, xi, y);
-  }
-  [[nodiscard]] double controlled(Control control, int channel, double xi, View y) override {
-    return system_->controlled(control, channel, xi, y);
-  }
-  [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, View y) override {
-    return system_->surface(contact_class, xi, y);
-  }
-  [[nodiscard]] bool is_open(int contact_class) const noexcept override { return system_->is_open(contact_class); }
-  [[nodiscard]] bool contacts_adhere() const noexcept override { return system_->contacts_adhere(); }
-  [[nodiscard]] std::optional<Difficulty> difficulty(double xi, View y) override { return system_->difficulty(xi, y); }
-  [[nodiscard]] std::vector<Diagnostic> warnings() const override { return system_->warnings(); }
-  void branch_reach(View y, State reach) const override { system_->branch_reach(y, reach); }
-
- private:
-  std::unique_ptr<HybridSystem> system_;
-};
-
-class Profiled final : public Wrapped {
+class Profiled final : public WrappedSystem {
  public:
   Profiled(std::unique_ptr<HybridSystem> system, SystemProfile& profile)
-      : Wrapped(std::move(system)), profile_(profile), clock_cost_(clock_cost()) {}
+      : WrappedSystem(std::move(system)), profile_(profile), clock_cost_(clock_cost()) {}
 
   void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
-    time(profile_.law, [&] { Wrapped::begin_step(ramps, y, log); });
+    time(profile_.law, [&] { WrappedSystem::begin_step(ramps, y, log); });
   }
   void complete(double xi, State y) override {
-    time(profile_.law, [&] { Wrapped::complete(xi, y); });
+    time(profile_.law, [&] { WrappedSystem::complete(xi, y); });
   }
   void rates(double xi, View y, State dy) override {
-    time(profile_.law, [&] { Wrapped::rates(xi, y, dy); });
+    time(profile_.law, [&] { WrappedSystem::rates(xi, y, dy); });
   }
   void all_rates(double xi, View y, State dy) override {
-    time(profile_.law, [&] { Wrapped::all_rates(xi, y, dy); });
+    time(profile_.law, [&] { WrappedSystem::all_rates(xi, y, dy); });
   }
   void residual(double xi, View y, View dy, State res) override {
-    time(profile_.law, [&] { Wrapped::residual(xi, y, dy, res); });
+    time(profile_.law, [&] { WrappedSystem::residual(xi, y, dy, res); });
   }
   void solve(double xi, State y) override {
-    time(profile_.law, [&] { Wrapped::solve(xi, y); });
+    time(profile_.law, [&] { WrappedSystem::solve(xi, y); });
   }
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
     std::optional<double> result;
-    time(profile_.law, [&] { result = Wrapped::closed_quadrature(xi, y); });
+    time(profile_.law, [&] { result = WrappedSystem::closed_quadrature(xi, y); });
     return result;
   }
   void guard_values(double xi, View y, State values) override {
-    time(profile_.guards, [&] { Wrapped::guard_values(xi, y, values); });
+    time(profile_.guards, [&] { WrappedSystem::guard_values(xi, y, values); });
   }
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
                                 std::vector<Event>& log) override {
     std::optional<DomainEnd> result;
-    time(profile_.law, [&] { result = Wrapped::fire(fired, xi, y, log); });
+    time(profile_.law, [&] { result = WrappedSystem::fire(fired, xi, y, log); });
     return result;
   }
   void observe(double xi, View y, State values) override {
-    time(profile_.recording, [&] { Wrapped::observe(xi, y, values); });
+    time(profile_.recording, [&] { WrappedSystem::observe(xi, y, values); });
   }
 
  private:
@@ -146,25 +94,25 @@ class Profiled final : public Wrapped {
   double clock_cost_;
 };
 
-class Limited final : public Wrapped {
+class Limited final : public WrappedSystem {
  public:
-  Limited(std::unique_ptr<HybridSystem> system, double end) : Wrapped(std::move(system)), end_(end) {}
+  Limited(std::unique_ptr<HybridSystem> system, double end) : WrappedSystem(std::move(system)), end_(end) {}
 
   void rates(double xi, View y, State dy) override {
     check_time();
-    Wrapped::rates(xi, y, dy);
+    WrappedSystem::rates(xi, y, dy);
   }
   void residual(double xi, View y, View dy, State res) override {
     check_time();
-    Wrapped::residual(xi, y, dy, res);
+    WrappedSystem::residual(xi, y, dy, res);
   }
   void solve(double xi, State y) override {
     check_time();
-    Wrapped::solve(xi, y);
+    WrappedSystem::solve(xi, y);
   }
   void guard_values(double xi, View y, State values) override {
     check_time();
-    Wrapped::guard_values(xi, y, values);
+    WrappedSystem::guard_values(xi, y, values);
   }
 
  private:
@@ -182,21 +130,21 @@ class Limited final : public Wrapped {
   Clock::time_point next_sample_;
 };
 
-class AlwaysObserved final : public Wrapped {
+class AlwaysObserved final : public WrappedSystem {
  public:
   explicit AlwaysObserved(std::unique_ptr<HybridSystem> system)
-      : Wrapped(std::move(system)), values_(observables().size()) {}
+      : WrappedSystem(std::move(system)), values_(observables().size()) {}
 
   void rates(double xi, View y, State dy) override {
-    Wrapped::rates(xi, y, dy);
+    WrappedSystem::rates(xi, y, dy);
     observe(xi, y, values_);
   }
   void residual(double xi, View y, View dy, State res) override {
-    Wrapped::residual(xi, y, dy, res);
+    WrappedSystem::residual(xi, y, dy, res);
     observe(xi, y, values_);
   }
   void solve(double xi, State y) override {
-    Wrapped::solve(xi, y);
+    WrappedSystem::solve(xi, y);
     observe(xi, y, values_);
   }
 
@@ -204,29 +152,29 @@ class AlwaysObserved final : public Wrapped {
   std::vector<double> values_;
 };
 
-class AlwaysIntegrated final : public Wrapped {
+class AlwaysIntegrated final : public WrappedSystem {
  public:
-  using Wrapped::Wrapped;
+  using WrappedSystem::WrappedSystem;
   [[nodiscard]] std::optional<double> closed_quadrature(double, View) override { return std::nullopt; }
 };
 
-class Disturbed final : public Wrapped {
+class Disturbed final : public WrappedSystem {
  public:
   Disturbed(std::unique_ptr<HybridSystem> system, const std::array<double, 2>& shares)
-      : Wrapped(std::move(system)), shares_(shares), shown_(unknowns().size()) {}
+      : WrappedSystem(std::move(system)), shares_(shares), shown_(unknowns().size()) {}
 
   void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
     disturb(y);
-    Wrapped::begin_step(ramps, y, log);
+    WrappedSystem::begin_step(ramps, y, log);
   }
   void observe(double xi, View y, State values) override {
     std::ranges::copy(y, shown_.begin());
     disturb(shown_);
     try {
-      Wrapped::complete(xi, shown_);
-      Wrapped::observe(xi, shown_, values);
+      WrappedSystem::complete(xi, shown_);
+      WrappedSystem::observe(xi, shown_, values);
     } catch (const std::domain_error&) {
-      Wrapped::observe(xi, y, values);  // next to a limit
+      WrappedSystem::observe(xi, y, values);  // next to a limit
     }
   }
 
@@ -242,47 +190,47 @@ class Disturbed final : public Wrapped {
   std::vector<double> shown_;
 };
 
-class LookingBeyond final : public Wrapped {
+class LookingBeyond final : public WrappedSystem {
  public:
   LookingBeyond(std::unique_ptr<HybridSystem> system, double factor)
-      : Wrapped(std::move(system)), factor_(factor), inner_rates_(unknowns().size()) {}
+      : WrappedSystem(std::move(system)), factor_(factor), inner_rates_(unknowns().size()) {}
 
   void begin_step(std::span<const Ramp> ramps, State y, std::vector<Event>& log) override {
     longer_.assign(ramps.begin(), ramps.end());
     for (Ramp& ramp : longer_) ramp.end = std::lerp(ramp.start, ramp.end, factor_);
-    Wrapped::begin_step(longer_, y, log);
+    WrappedSystem::begin_step(longer_, y, log);
   }
-  void complete(double xi, State y) override { Wrapped::complete(inner(xi), y); }
+  void complete(double xi, State y) override { WrappedSystem::complete(inner(xi), y); }
   void rates(double xi, View y, State dy) override {
-    Wrapped::rates(inner(xi), y, dy);
+    WrappedSystem::rates(inner(xi), y, dy);
     for (double& rate : dy) rate /= factor_;
   }
   void all_rates(double xi, View y, State dy) override {
-    Wrapped::all_rates(inner(xi), y, dy);
+    WrappedSystem::all_rates(inner(xi), y, dy);
     for (double& rate : dy) rate /= factor_;
   }
   void residual(double xi, View y, View dy, State res) override {
     std::ranges::transform(dy, inner_rates_.begin(), [this](double rate) { return factor_ * rate; });
-    Wrapped::residual(inner(xi), y, inner_rates_, res);
+    WrappedSystem::residual(inner(xi), y, inner_rates_, res);
   }
-  void solve(double xi, State y) override { Wrapped::solve(inner(xi), y); }
+  void solve(double xi, State y) override { WrappedSystem::solve(inner(xi), y); }
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
-    return Wrapped::closed_quadrature(inner(xi), y);
+    return WrappedSystem::closed_quadrature(inner(xi), y);
   }
-  void guard_values(double xi, View y, State values) override { Wrapped::guard_values(inner(xi), y, values); }
+  void guard_values(double xi, View y, State values) override { WrappedSystem::guard_values(inner(xi), y, values); }
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, State y,
                                 std::vector<Event>& log) override {
-    return Wrapped::fire(fired, inner(xi), y, log);
+    return WrappedSystem::fire(fired, inner(xi), y, log);
   }
-  void observe(double xi, View y, State values) override { Wrapped::observe(inner(xi), y, values); }
+  void observe(double xi, View y, State values) override { WrappedSystem::observe(inner(xi), y, values); }
   [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, View y) override {
-    return Wrapped::quantity(quantity, channel, inner(xi), y);
+    return WrappedSystem::quantity(quantity, channel, inner(xi), y);
   }
   [[nodiscard]] double controlled(Control control, int channel, double xi, View y) override {
-    return Wrapped::controlled(control, channel, inner(xi), y);
+    return WrappedSystem::controlled(control, channel, inner(xi), y);
   }
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, View y) override {
-    return Wrapped::surface(contact_class, inner(xi), y);
+    return WrappedSystem::surface(contact_class, inner(xi), y);
   }
 
  private:

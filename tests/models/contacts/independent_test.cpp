@@ -292,5 +292,32 @@ TEST(LawCheck, FindsFunctionsThatDoNotBelongTogether) {
   EXPECT_TRUE(contacts::contradiction_in(HalfWork{}, 0.1).starts_with("work(b, d) grows by 0.01 at"));
 }
 
+struct SpringWithAHole : Spring {
+  double force(Branch, double d) const { return d < 0.06 ? d : std::nan(""); }
+};
+
+TEST(IndependentContacts, StopWhereTheLawGivesNoFiniteForce) {
+  for (const char* form : k_all_forms) {
+    const TestRun run = run_law<SpringWithAHole>(pair_of_walls({ramp(0.1)}), form);
+    EXPECT_NE(run.record.status, RunStatus::complete) << form;
+    EXPECT_NE(run.record.message, "") << form;
+    for (const double force : run.column("axial.force")) EXPECT_TRUE(std::isfinite(force)) << form;
+  }
+}
+
+struct WithoutAUnit : Spring {
+  double unit_force(double) const { return 0.0; }
+};
+WithoutAUnit without_a_unit(const ModelInput& /*input*/) { return {}; }
+
+TEST(ModelOf, RefusesALawWhoseUnitOfForceIsNone) {
+  const Model model = contacts::model_of<without_a_unit>(unnamed());
+  const std::map<std::string, double> values;
+  const std::map<std::string, OptionValue> options;
+  const std::map<std::string, SampledCurve> curves;
+  const ModelInput input{.radius = 3.0, .values = values, .options = options, .curves = curves};
+  EXPECT_THROW(static_cast<void>(model.bind(input, {}, {})), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace monograin::contacts_test

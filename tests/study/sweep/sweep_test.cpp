@@ -74,6 +74,13 @@ class SweepFiles : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+/// Names of the files and folders in a folder.
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
 /// Words first, then numbers.
 std::vector<std::string> overrides_of(const Sweep& sweep, std::size_t run) { return scenario_of(sweep, run).overrides; }
 
@@ -433,6 +440,12 @@ TEST_F(SweepFiles, FaultsOfColumnsAreAtTheirPlaces) {
   ASSERT_EQ(unknown.size(), 2U);
   EXPECT_TRUE(unknown[0].starts_with("sweep.toml:2:24: 'axial.forse' is no column of the histories")) << unknown[0];
   EXPECT_TRUE(unknown[1].starts_with("sweep.toml:2:43: 'axial.regime' is no column of the histories")) << unknown[1];
+  const auto of_a_map =
+      faults_of(head + "design = \"saltelli\"\nsamples = 4\nresults = [\"max(axial.force)\"]\n" + vary);
+  ASSERT_EQ(of_a_map.size(), 1u);
+  EXPECT_TRUE(
+      of_a_map[0].starts_with("sweep.toml:4:12: \"max(axial.force)\": 'axial.force' is no column of the results"))
+      << of_a_map[0];
   const auto formula = faults_of(head + "design = \"saltelli\"\nsamples = 4\nresults = [\"end.wrok / 2\"]\n" + vary);
   ASSERT_EQ(formula.size(), 1U);
   EXPECT_TRUE(formula[0].starts_with("sweep.toml:4:12: 'wrok' is no column of the histories")) << formula[0];
@@ -493,6 +506,24 @@ TEST_F(SweepFiles, HistoriesAreKeptIfAskedFor) {
 // --- going on
 
 /// The journal of a sweep that was stopped after all runs but before its results were written.
+TEST_F(SweepFiles, NothingOfAnEarlierSweepStaysBesideTheResultsOfAnother) {
+  const std::string bands = "\n[bands]\nx = \"time\"\ny = [\"axial.force\"]\n";
+  const Sweep first = read(k_grid + bands);
+  static_cast<void>(results(first, "out"));
+  ASSERT_EQ(std::distance(fs::directory_iterator(path("out") / "histories"), {}), 12);
+  for (const char* name : {"bands.csv", "bands.gp", "sensitivity.csv"})
+    write(std::string("out/") + name, "# title: a\n");
+  write("out/bands.svg", "<svg/>");
+  write("out/histories/notes.txt", "of the user");
+  write("out/plan.txt", "of the user");
+  const std::string only = "scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { values = [0.2, 0.3] }\n";
+  static_cast<void>(results(read(only + bands), "out"));
+  EXPECT_EQ(names_in(path("out")), (std::set<std::string>{"histories", "plan.txt", "results.csv"}));
+  EXPECT_EQ(names_in(path("out") / "histories"), (std::set<std::string>{"1.csv", "2.csv", "notes.txt"}));
+  static_cast<void>(results(read(only), "out"));
+  EXPECT_EQ(names_in(path("out") / "histories"), std::set<std::string>{"notes.txt"});
+}
+
 class StoppedSweep : public SweepFiles {
  protected:
   StoppedSweep() {
