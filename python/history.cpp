@@ -5,8 +5,11 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "bindings.hpp"
 
@@ -30,9 +33,21 @@ py::array values_of(const py::object& self, const std::string& name) {
   return array;
 }
 
+/// Names of the columns; the heading, with the unit, of columns that share their name.
+std::vector<std::string> names_of(const History& history) {
+  const std::vector<Column>& columns = history.table().columns();
+  std::vector<std::string> names;
+  for (const Column& column : columns) {
+    const bool is_shared = std::ranges::count(columns, column.name, &Column::name) > 1;
+    names.push_back(is_shared ? column.heading() : column.name);
+  }
+  return names;
+}
+
 py::dict units_of(const History& history) {
   py::dict units;
-  for (const auto& column : history.table().columns()) units[py::str(column.name)] = column.unit;
+  const std::vector<std::string> names = names_of(history);
+  for (std::size_t k = 0; k < names.size(); ++k) units[py::str(names[k])] = history.table().columns()[k].unit;
   return units;
 }
 
@@ -74,7 +89,7 @@ History table_of(std::vector<std::pair<std::string, std::string>> header,
 void add_history(py::module_& module) {
   py::class_<History>(module, "Table")
       .def_property_readonly("row_count", &History::row_count)
-      .def_property_readonly("columns", &History::names)
+      .def_property_readonly("columns", &names_of)
       .def_property_readonly("units", &units_of)
       .def_property_readonly("header", [](const History& history) { return history.table().header; })
       .def("contains", [](const History& history, const std::string& name) { return history.contains(name); })

@@ -57,13 +57,16 @@ class SignalWatch {
 template <class Make>
 RunResult run_watched(Make&& make) {
   SignalWatch watch;
+  // Taking the lock back may end the thread, which must not find the result half handed over.
+  std::optional<RunResult> result;
   try {
     const Unlocked unlocked;
-    return make(RunOptions{.stop = [&watch] { return watch.has_raised(); }});
+    result.emplace(make(RunOptions{.stop = [&watch] { return watch.has_raised(); }}));
   } catch (const RunInterrupted&) {
     watch.rethrow();
-    throw;
+    throw;  // nothing else interrupts a run
   }
+  return *std::move(result);
 }
 
 /// Thrown by work that was asked to stop; nobody sees it but run_interruptibly().

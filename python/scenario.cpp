@@ -35,6 +35,24 @@ SoundScenario parse_sound(std::string text, std::string origin, std::vector<std:
   return checked_scenario(Scenario::parse(std::move(text), std::move(origin), std::move(overrides)));
 }
 
+/// The scenario with another name of its file, in whose folder the files that it names are.
+SoundScenario with_origin(const SoundScenario& scenario, std::string origin) {
+  SoundScenario placed = scenario;
+  placed.source = Scenario::parse(scenario.source.text(), std::move(origin), scenario.source.overrides());
+  return placed;
+}
+
+/// The scenario as text, with its overrides, and with absolute names of the files that it names.
+std::string toml_of(const SoundScenario& scenario) {
+  Scenario placed = scenario.source;
+  const std::filesystem::path folder = std::filesystem::path(placed.origin()).parent_path();
+  for (const auto& [option, curve] : scenario.checked.curves) {
+    const std::filesystem::path file = folder / std::get<std::string>(scenario.checked.options.at(option));
+    placed.set(scenario.checked.model + '.' + option, file.string());
+  }
+  return text_with_overrides(placed.text(), placed.overrides());
+}
+
 SoundScenario read_sound(const std::string& file) {
   // The type selects the overload of the public header; the room `scenario` also has a function read_scenario.
   Scenario (*const read)(const std::filesystem::path&) = read_scenario;
@@ -82,15 +100,13 @@ void add_scenario(py::module_& module) {
       .def_property_readonly("name", [](const SoundScenario& scenario) { return scenario.checked.name; })
       .def_property_readonly("title", [](const SoundScenario& scenario) { return scenario.checked.title; })
       .def_property_readonly("model", [](const SoundScenario& scenario) { return scenario.checked.model; })
-      .def("to_toml",
-           [](const SoundScenario& scenario) {
-             return text_with_overrides(scenario.source.text(), scenario.source.overrides());
-           })
+      .def("with_origin", &with_origin)
+      .def("to_toml", &toml_of)
       .def("run", &run_sound)
       .def("parameters", &parameters_of)
       .def("profile", &profile_of);
-  module.def("appended_override", [](std::vector<std::string> overrides, std::string text) {
-    append_override(overrides, std::move(text));
+  module.def("with_override", [](std::vector<std::string> overrides, std::string text) {
+    set_override(overrides, std::move(text));
     return overrides;
   });
   module.def("save_run", &save_texts);

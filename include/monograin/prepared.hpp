@@ -17,7 +17,7 @@ namespace monograin {
 struct MapOptions {
   int threads = 0;  ///< number of threads; 0: one for each core
   /// Called between runs, always on the calling thread. Returning true ends map() early: no further sample is begun,
-  /// and the status of samples not run stays empty. An empty function never ends it.
+  /// and the status of samples not run stays empty; nothing is thrown. An empty function never ends it.
   std::function<bool()> stop{};
 };
 

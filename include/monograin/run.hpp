@@ -40,8 +40,8 @@ class RunResult {
 };
 
 struct RunOptions {
-  /// Called now and then during a run, in the thread of the call. Returning true ends the run. An empty function never
-  /// ends it.
+  /// Called now and then during a run, in the thread of the call. Returning true ends the run by RunInterrupted. An
+  /// empty function never ends it.
   std::function<bool()> stop{};
 };
 

@@ -1,4 +1,4 @@
-/// Status with which a run ends.
+/// How a run ends: its status, and the exception of a run that was interrupted.
 #pragma once
 
 #include <stdexcept>

@@ -88,7 +88,7 @@ constexpr std::array k_regimes{
 
 constexpr std::array k_events{
     Term{"contact-made", "a wall comes to touch the particle, or the place at which it has left it"},
-    Term{"contact-lost", "a wall leaves the particle, short of where it first touched it"},
+    Term{"contact-lost", "a wall leaves the particle at the displacement d0 of its unloading"},
     Term{"transition", "the linear part ends; the slope jumps"},
     Term{"load-reversal", "a contact at its largest displacement starts to unload"},
     Term{"reload", "a contact passes its old largest displacement, and the loading law goes on"},

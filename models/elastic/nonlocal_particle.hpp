@@ -87,8 +87,8 @@ class Particle {
   // Equations.
 
   void solve(double xi, std::span<double> y);
-  /// At the begin of a step, moves a loose particle with the walls whose forces begin to press it, to walls that can
-  /// bear these forces. Does nothing if a contact is loaded, or if no wall is in the path.
+  /// At the beginning of a step, moves a loose particle with the walls whose forces begin to press it, to walls that
+  /// can bear these forces. Does nothing if a contact is loaded, or if no wall is in the path.
   void carry_to_support(std::span<double> y);
   /// Recomputes the gaps, and the position of a free centre: their errors would close walls that only touch.
   void clear_centre(double xi, std::span<double> y);

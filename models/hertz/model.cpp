@@ -39,7 +39,7 @@ constexpr std::array k_events{
 
 constexpr std::array<string_view, 2> k_domain{
     "small contacts: contact radius well below the particle radius (no check)",
-    "the overlap stays below the diameter",
+    "a wall stays at least 1e-3 R0 from the centre (stop)",
 };
 
 constexpr std::array<string_view, 1> k_skipped{"yield and growth of the apparent radius: not part of the model"};

@@ -33,7 +33,7 @@ constexpr std::array<string_view, 2> k_minimum_conditions{"current", "ideal"};
 
 constexpr OptionKey k_unloading{
     "unloading",
-    "what walls do that go back: the source has no law (none refuses such programs); mdr is "
+    "unloading of the contacts: none (the source has no law; a program that unloads is refused) or mdr, "
     "the workbench's own extension, the elastic indenter that model mdr leaves under the "
     "same mean pressure and contact radius",
     OptionKey::Kind::choice, k_unloading_rules};

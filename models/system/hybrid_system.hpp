@@ -152,7 +152,7 @@ class HybridSystem {
   virtual ~HybridSystem() = default;
 
   /// Declares that this run needs no energies: observe() then gives NaN for them, and `direct` skips the work.
-  void leave_out_energies() noexcept { has_energies_ = false; }
+  virtual void leave_out_energies() noexcept { has_energies_ = false; }
   [[nodiscard]] bool has_energies() const noexcept { return has_energies_; }
 
   /// Unknowns in the order of the array y.

@@ -1,4 +1,4 @@
-/// A system that passes every call on to another one. What measures or ends a run overrides some of its functions.
+/// Systems that pass every call on to another one, and measure, disturb or end its run.
 #pragma once
 
 #include <functional>
@@ -21,6 +21,10 @@ class WrappedSystem : public HybridSystem {
  public:
   explicit WrappedSystem(std::unique_ptr<HybridSystem> system) : system_(std::move(system)) {}
 
+  void leave_out_energies() noexcept override {
+    HybridSystem::leave_out_energies();
+    system_->leave_out_energies();
+  }
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return system_->unknowns(); }
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return system_->classes(); }
   void start(State y) override { system_->start(y); }
@@ -68,6 +72,37 @@ class WrappedSystem : public HybridSystem {
 
  private:
   std::unique_ptr<HybridSystem> system_;
+};
+
+/// Calls a function before the evaluations that every integrator repeats; the function may throw to end the run.
+class WatchedSystem final : public WrappedSystem {
+ public:
+  WatchedSystem(std::unique_ptr<HybridSystem> system, std::function<void()> before)
+      : WrappedSystem(std::move(system)), before_(std::move(before)) {}
+
+  void rates(double xi, View y, State dy) override {
+    before_();
+    WrappedSystem::rates(xi, y, dy);
+  }
+  void residual(double xi, View y, View dy, State res) override {
+    before_();
+    WrappedSystem::residual(xi, y, dy, res);
+  }
+  void solve(double xi, State y) override {
+    before_();
+    WrappedSystem::solve(xi, y);
+  }
+  void guard_values(double xi, View y, State values) override {
+    before_();
+    WrappedSystem::guard_values(xi, y, values);
+  }
+  void observe(double xi, View y, State values) override {
+    before_();
+    WrappedSystem::observe(xi, y, values);
+  }
+
+ private:
+  std::function<void()> before_;
 };
 
 }  // namespace monograin

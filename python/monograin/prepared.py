@@ -50,7 +50,7 @@ class Prepared:
             ScenarioError: if a value is not admissible.
             SolverError: as in :meth:`monograin.Scenario.run`.
             ValueError: if the number of values is not that of the keys.
-            KeyboardInterrupt: on Ctrl-C.
+            KeyboardInterrupt: on Ctrl-C, in the main thread of Python.
         """
         numbers = self._in_order(values, getattr(values, "index", None)).copy()
         if numbers.ndim != 1:

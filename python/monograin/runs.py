@@ -32,8 +32,8 @@ class Scenario:
         source: TOML text as in a scenario file, or a dict of the same structure. In a dict, a str is a text as in a
             file (``"30 MPa"``), a float is a number in SI units, tables are dicts and arrays of tables are lists of
             dicts.
-        origin: file name that messages show. Its stem names the scenario; file names in the scenario are relative to
-            its folder.
+        origin: name of the file that the text is from, in messages. Its stem names the scenario; file names in the
+            scenario are relative to its folder.
         overrides: ``key=value`` texts, as for the option ``--set`` of the program.
 
     Raises:
@@ -43,20 +43,20 @@ class Scenario:
     processes.
     """
 
-    __slots__ = ("_core", "_place")
+    __slots__ = ("_core",)
     _core: _core.Scenario
-    _place: str  # absolute path of the origin
 
     def __init__(
         self, source: Union[str, Mapping[str, Any]], *, origin: Path = "scenario.toml", overrides: Iterable[str] = ()
     ) -> None:
-        if isinstance(source, os.PathLike) or (isinstance(source, str) and source.endswith(".toml")):
-            raise TypeError(f"{os.fspath(source)!r} is the name of a file; Scenario.load reads files")
+        is_name = isinstance(source, str) and source.endswith(".toml") and "\n" not in source and "=" not in source
+        if is_name or isinstance(source, os.PathLike):
+            raise TypeError(f"{str(source)!r} is the name of a file; Scenario.load reads files")
         if isinstance(overrides, str):
             raise TypeError(f"overrides: expected a list of texts, such as [{overrides!r}], not one str")
         text = source if isinstance(source, str) else _toml.document(source)
-        self._core = _core.Scenario.parse(text, os.fspath(origin), list(overrides))
-        self._place = os.path.abspath(origin)
+        parsed = _core.Scenario.parse(text, os.fspath(origin), list(overrides))
+        self._core = parsed.with_origin(os.path.abspath(origin))
 
     @classmethod
     def load(cls, path: Path) -> Scenario:
@@ -66,8 +66,7 @@ class Scenario:
             ScenarioError: with every fault of the scenario, or if the file cannot be read.
         """
         scenario = cls.__new__(cls)
-        scenario._place = os.path.abspath(path)
-        scenario._core = _core.Scenario.read(scenario._place)
+        scenario._core = _core.Scenario.read(os.path.abspath(path))
         return scenario
 
     def replace(self, values: Mapping[str, Any]) -> Scenario:
@@ -84,10 +83,8 @@ class Scenario:
         """
         overrides = self.overrides
         for key, value in values.items():
-            overrides = _core.appended_override(overrides, f"{key}={_toml.text_of(value, key)}")
-        # The name that messages show stays, unless it has become that of another file.
-        origin = self.origin if os.path.abspath(self.origin) == self._place else self._place
-        return Scenario(self.text, origin=origin, overrides=overrides)
+            overrides = _core.with_override(overrides, f"{key}={_toml.text_of(value, key)}")
+        return Scenario(self.text, origin=self.origin, overrides=overrides)
 
     @property
     def name(self) -> str:
@@ -110,16 +107,19 @@ class Scenario:
         return self._core.text
 
     def to_toml(self) -> str:
-        """Returns the scenario as TOML text, with the values that were replaced. Comments are lost if there are any."""
+        """Returns the scenario as TOML text, with the values that were replaced, and absolute names of files.
+
+        Comments are lost if there are such values or files.
+        """
         return self._core.to_toml()
 
     def to_dict(self) -> dict[str, Any]:
-        """Returns the scenario as a dict, with the values that were replaced, as the constructor takes it."""
+        """Returns the scenario as a dict, as :meth:`to_toml` has it and the constructor takes it."""
         return tomllib.loads(self.to_toml())
 
     @property
     def origin(self) -> str:
-        """Name of the file, as given to the constructor; its absolute path after ``load``."""
+        """Absolute path of the file that the text is from, or that a text in memory would have."""
         return self._core.origin
 
     @property
@@ -136,7 +136,7 @@ class Scenario:
         Raises:
             SolverError: if the solver gives up and ``check`` is True; the error has the run up to there.
             ScenarioError: if the programs of the walls are inconsistent.
-            KeyboardInterrupt: on Ctrl-C.
+            KeyboardInterrupt: on Ctrl-C, in the main thread of Python.
         """
         return checked(Run(self._core.run(), lambda: self), check)
 
@@ -154,7 +154,7 @@ class Scenario:
         return Prepared(self, keys)
 
     def _identity(self) -> tuple[str, str, tuple[str, ...]]:
-        return (self.text, self._place, tuple(self.overrides))
+        return (self.text, self.origin, tuple(self.overrides))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
@@ -201,8 +201,8 @@ class _Record:
 class Run:
     """A recorded run: its curves, its events, and how it ended.
 
-    ``run["axial.force"]`` is a column of the history, see :class:`monograin.Table`. ``len(run)`` is its number of rows.
-    A run can be pickled and copied.
+    ``run["axial.force"]`` is a column of the history, see :class:`monograin.Table`. ``len(run)`` is its number of rows,
+    and iteration yields its rows; ``in`` and ``keys`` are about its columns. A run can be pickled and copied.
     """
 
     def __init__(self, core: Union[_core.Run, _Record], scenario: Callable[[], Scenario]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import os
+import types
 import warnings
 from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, Union
 
@@ -101,7 +102,7 @@ class FittedParameter(NamedTuple):
 
 
 class Calibration:
-    """Result of a calibration: fitted parameters, their uncertainty, and the fit itself."""
+    """Result of a calibration: fitted parameters, their uncertainty, and the fit itself. It can be pickled and copied."""
 
     def __init__(self, core: _core.Fitted) -> None:
         self._core = core
@@ -165,6 +166,9 @@ class Calibration:
     def __str__(self) -> str:
         return self._core.text
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_restored, (Calibration, _parts_of(self._core)))
+
     def __repr__(self) -> str:
         return f"<Calibration {self._core.name!r}: {', '.join(self.parameters)}>"
 
@@ -179,7 +183,7 @@ def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Opti
             folder. In a dict, the scenario may be a :class:`Scenario`, and the ``file`` of data may also be the data: a
             :class:`Run` or :class:`Table`, a ``pandas.DataFrame``, or a dict from headings to arrays, such as
             ``{"displacement[mm]": d, "force[N]": f}``. A nan is a missing cell; columns of words are left out. A
-            DataFrame of :meth:`Table.to_pandas` has its units.
+            DataFrame of :meth:`Table.to_pandas` has the units in its ``attrs``; change them with the values.
         folder: folder for the files that the program writes; None: none are written.
         confidence: level of the intervals in (0, 1); None: the level of the file, or 0.95.
 
@@ -230,7 +234,10 @@ class ExpectedErrors(NamedTuple):
 
 
 class Design:
-    """Expected errors of the parameters from a planned experiment, alone and with each candidate program."""
+    """Expected errors of the parameters from a planned experiment, alone and with each candidate program.
+
+    It can be pickled and copied.
+    """
 
     def __init__(self, core: _core.Designed) -> None:
         self._core = core
@@ -287,6 +294,9 @@ class Design:
 
     def __str__(self) -> str:
         return self._core.text
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_restored, (Design, _parts_of(self._core)))
 
     def __repr__(self) -> str:
         return f"<Design {self._core.name!r}: {', '.join(self._core.programs)}>"
@@ -384,6 +394,18 @@ def compare(a: Union[Run, Table, Path], b: Union[Run, Table, Path], *, x: str = 
     return Comparison([CurveDifference(*curve) for curve in curves], [Gap(*gap) for gap in gaps])
 
 
+def _parts_of(core: Any) -> dict[str, Any]:
+    """Returns the attributes of a result of the compiled module."""
+    names = vars(core) if isinstance(core, types.SimpleNamespace) else vars(type(core))
+    values = {name: getattr(core, name) for name in names if not name.startswith("_")}
+    return {name: Table(value) if isinstance(value, _core.Table) else value for name, value in values.items()}
+
+
+def _restored(kind: Any, parts: dict[str, Any]) -> Any:
+    core = {name: value._core if isinstance(value, Table) else value for name, value in parts.items()}
+    return kind(types.SimpleNamespace(**core))
+
+
 def _folder(folder: Optional[Path]) -> str:
     return "" if folder is None else os.fspath(folder)
 
@@ -391,30 +413,19 @@ def _folder(folder: Optional[Path]) -> str:
 def _named_text(source: Source, name: str) -> tuple[str, Optional[str]]:
     """Returns the name of a study in messages, and its text; None for a file."""
     if isinstance(source, Mapping):
-        return name, _toml.document(_with_texts_of_scenarios(source))
+        return name, _toml.document(_plain(source))
     return os.fspath(source), None
 
 
-def _with_texts_of_scenarios(value: Any) -> Any:
-    """Returns a study in whose place of a :class:`Scenario` stands its dict."""
+def _plain(value: Any) -> Any:
+    """Returns a study with the dict of a :class:`Scenario` in its place."""
     if isinstance(value, Scenario):
-        return _in_any_folder(value)
+        return value.to_dict()
     if isinstance(value, Mapping):
-        return {key: _with_texts_of_scenarios(entry) for key, entry in value.items()}
+        return {key: _plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_with_texts_of_scenarios(entry) for entry in value]
+        return [_plain(entry) for entry in value]
     return value
-
-
-def _in_any_folder(scenario: Scenario) -> dict[str, Any]:
-    """Returns a scenario as a dict that names its files by their absolute paths."""
-    content = scenario.to_dict()
-    folder = os.path.dirname(scenario._place)
-    options = content.get(scenario.model, {})
-    for key, value in options.items():
-        if isinstance(value, str) and os.path.isfile(os.path.join(folder, value)):
-            options[key] = os.path.join(folder, value)
-    return content
 
 
 def _data_as_texts(source: Source) -> tuple[Source, dict[str, str]]:
@@ -444,11 +455,8 @@ def _csv(data: Union[Run, Table, Mapping[str, Any], pandas.DataFrame]) -> str:
     columns = {}
     for heading in data:
         values = np.asarray(data[heading])
-        if values.dtype.kind in "OUS":  # numbers of an array of objects are numbers
-            try:
-                values = values.astype(float)
-            except ValueError:
-                continue
+        if values.dtype.kind in "OUS" and not any(map(_is_number, values.ravel().tolist())):
+            continue
         unit = units.get(heading, "")
         columns[f"{heading}[{unit}]" if unit else str(heading)] = values.astype(float)
     shapes = [values.shape for values in columns.values()]
@@ -457,6 +465,13 @@ def _csv(data: Union[Run, Table, Mapping[str, Any], pandas.DataFrame]) -> str:
     rows = (["" if np.isnan(value) else repr(float(value)) for value in row] for row in zip(*columns.values()))
     headings = ['"' + heading.replace('"', '""') + '"' for heading in columns]
     return "".join(",".join(cells) + "\n" for cells in (headings, *rows))
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        return not np.isnan(float(value))
+    except (TypeError, ValueError):
+        return False
 
 
 def _history(source: Union[Run, Table, Path]) -> Table:

@@ -19,7 +19,8 @@ class Table:
     """Rows of numbers and words under named columns.
 
     ``table["axial.force"]`` is a column. ``len(table)`` is the number of rows. Iteration yields the rows, each a dict
-    from the name of a column to its value.
+    from the name of a column to its value; ``in`` and ``keys`` are about columns. Columns of one name but different
+    units, as a file may have them, are named with their units (``"force[N]"``).
 
     A column of numbers is a read-only view of the table's memory: nothing is copied, and the view stays valid after the
     table is deleted. Undefined values are nan. A column of words is a read-only array of str.

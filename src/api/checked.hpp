@@ -13,8 +13,8 @@ namespace monograin {
 /// @throws ScenarioError with all faults that it finds
 [[nodiscard]] CheckedScenario checked(const Scenario& scenario);
 
-/// Appends a `key=value` text to overrides, in place of an earlier one of the same key where no other one lies between
-/// whose effect depends on it.
-void append_override(std::vector<std::string>& overrides, std::string text);
+/// Adds a `key=value` text to overrides. It replaces the one of the same key, unless a later one sets a table with this
+/// key or a key in its value: the new text is then the last one.
+void set_override(std::vector<std::string>& overrides, std::string text);
 
 }  // namespace monograin

@@ -26,30 +26,39 @@ Scenario Scenario::parse(std::string text, std::string origin, std::vector<std::
 
 namespace {
 
-/// True if the path of one override may lie within that of another, or both may name entries of one array. Their order
-/// then counts.
+/// Path of a `key=value` text.
+std::string_view path_of(std::string_view text) { return text.substr(0, text.find('=')); }
+
+/// True if one path is within the other, or if a range of entries may make it so ("wall[2-5].gap", "wall[3].gap").
 bool may_meet(std::string_view a, std::string_view b) {
+  const auto is_within = [](std::string_view inner, std::string_view outer) {
+    return inner.starts_with(outer) &&
+           (inner.size() == outer.size() || inner[outer.size()] == '.' || inner[outer.size()] == '[');
+  };
+  const auto has_range = [](std::string_view path) {
+    const std::size_t index = path.find('[');
+    return index != path.npos && path.find('-', index) != path.npos;
+  };
   const auto array = [](std::string_view path) { return path.substr(0, path.find('[')); };
-  const bool are_entries = a.find('[') != a.npos && b.find('[') != b.npos && array(a) == array(b);
-  return are_entries || a.starts_with(b) || b.starts_with(a);
+  const bool share_a_range = (has_range(a) || has_range(b)) && array(a) == array(b);
+  return share_a_range || is_within(a, b) || is_within(b, a);
 }
 
 }  // namespace
 
-void append_override(std::vector<std::string>& overrides, std::string text) {
-  const auto path = [](std::string_view entry) { return entry.substr(0, entry.find('=')); };
+void set_override(std::vector<std::string>& overrides, std::string text) {
   for (auto earlier = overrides.rbegin(); earlier != overrides.rend(); ++earlier) {
-    if (path(*earlier) == path(text)) {
-      overrides.erase(std::next(earlier).base());
-      break;
+    if (path_of(*earlier) == path_of(text)) {
+      *earlier = std::move(text);
+      return;
     }
-    if (may_meet(path(*earlier), path(text))) break;
+    if (may_meet(path_of(*earlier), path_of(text))) break;
   }
   overrides.push_back(std::move(text));
 }
 
 Scenario& Scenario::set_value(std::string_view key, std::string_view value) {
-  append_override(overrides_, fmt::format("{}={}", key, value));
+  set_override(overrides_, fmt::format("{}={}", key, value));
   return *this;
 }
 

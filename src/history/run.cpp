@@ -14,6 +14,8 @@
 #include "history/recorder.hpp"
 #include "history/sensitivities.hpp"
 #include "history/wall_checks.hpp"
+#include "scenario/faults.hpp"
+#include "scenario/integrators.hpp"
 #include "scenario/remarks.hpp"
 #include "system/wrapped_system.hpp"
 
@@ -35,39 +37,6 @@ class Stopwatch {
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-/// Ends a run from within: whatever its integrator, it evaluates the system again and again.
-class Interruptible final : public WrappedSystem {
- public:
-  Interruptible(std::unique_ptr<HybridSystem> system, std::function<bool()> stop)
-      : WrappedSystem(std::move(system)), stop_(std::move(stop)) {}
-
-  void rates(double xi, View y, State dy) override {
-    ask();
-    WrappedSystem::rates(xi, y, dy);
-  }
-  void residual(double xi, View y, View dy, State res) override {
-    ask();
-    WrappedSystem::residual(xi, y, dy, res);
-  }
-  void solve(double xi, State y) override {
-    ask();
-    WrappedSystem::solve(xi, y);
-  }
-  void observe(double xi, View y, State values) override {
-    ask();
-    WrappedSystem::observe(xi, y, values);
-  }
-
- private:
-  void ask() {
-    constexpr int k_between = 64;  // evaluations, so that asking takes no time
-    if (++evaluations_ % k_between == 0 && stop_()) throw RunInterrupted();
-  }
-
-  std::function<bool()> stop_;
-  int evaluations_ = 0;
 };
 
 /// Keys of `[material]` and their symbols in the header of a history.
@@ -114,6 +83,16 @@ RunRecord record_with(Recorder& recorder, Scene& scene, std::string_view integra
   return record;
 }
 
+/// @throws ScenarioError if the scenario asks for a direct solution, and the scene has none
+IntegratorChoice integrator_of(const CheckedScenario& scenario, const HybridSystem& system) {
+  if (scenario.numerics.integrator == integrators::k_direct && !system.is_solvable()) {
+    throw_fault({scenario.name},
+                "integrator = \"direct\": the state of this scene depends on the path to it, which no "
+                "equation replaces; expected auto, or an integrator that follows the path");
+  }
+  return choose_integrator(scenario.numerics.integrator, system);
+}
+
 /// Adds what the walls of a history show of a scene that its law does not describe.
 void warn_of_walls(Run& run, std::span<const ContactClass> classes) {
   const CheckedScenario& scenario = run.scenario;
@@ -153,7 +132,7 @@ RunRecord record_run(const CheckedScenario& scenario, const LeftOut& left_out) {
   if (left_out.energies) scene.system->leave_out_energies();
   Output output = scenario.output;
   if (left_out.rows) output.points = 1;
-  const IntegratorChoice integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
+  const IntegratorChoice integrator = integrator_of(scenario, *scene.system);
   return record_run(scene, integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, output);
 }
 
@@ -166,7 +145,10 @@ RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances
 SystemWrapper interruptible(const std::function<bool()>& stop) {
   if (!stop) return {};
   return [stop](std::unique_ptr<HybridSystem> system) -> std::unique_ptr<HybridSystem> {
-    return std::make_unique<Interruptible>(std::move(system), stop);
+    return std::make_unique<WatchedSystem>(std::move(system), [stop, evaluations = 0]() mutable {
+      constexpr int k_between = 64;  // evaluations, so that asking takes no time
+      if (++evaluations % k_between == 0 && stop()) throw RunInterrupted();
+    });
   };
 }
 
@@ -174,13 +156,14 @@ Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) 
   Run run;
   run.scenario = scenario;
   Stopwatch watch;
-  const auto new_scene = [&] {
-    Scene scene = make_scene(scenario);
+  const auto scene_of = [&](const CheckedScenario& variant) {
+    Scene scene = make_scene(variant);
     if (wrapped) scene.system = wrapped(std::move(scene.system));
     return scene;
   };
+  const auto new_scene = [&] { return scene_of(scenario); };
   Scene scene = new_scene();
-  run.integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
+  run.integrator = integrator_of(scenario, *scene.system);
   run.timings.setup = watch.lap();
   const bool is_plain = scenario.sensitivities.empty();
   const auto why_differences = is_plain ? std::nullopt : record_with_sensitivities(run, scene, new_scene);
@@ -200,7 +183,7 @@ Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) 
     run.record.creates_energy = true;
   }
   warn_of_walls(run, scene.classes);
-  if (why_differences) add_sensitivities(run, *why_differences);
+  if (why_differences) add_sensitivities(run, *why_differences, scene_of);
   run.record.history.header = header_of(run);
   run.record.events.header = run.record.history.header;
   return run;

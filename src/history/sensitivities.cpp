@@ -397,7 +397,7 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
   return why;
 }
 
-void add_sensitivities(Run& run, const std::string& why) {
+void add_sensitivities(Run& run, const std::string& why, const std::function<Scene(const CheckedScenario&)>& scene_of) {
   if (has_forward_sensitivities(run.integrator.used)) {
     run.record.warnings.push_back(fmt::format("derivatives are differences of more runs: {}", why));
   }
@@ -423,7 +423,7 @@ void add_sensitivities(Run& run, const std::string& why) {
   for (const SensitivityKey& key : scenario.sensitivities) {
     const double step = share * std::abs(key.value);
     const auto run_with = [&](double number) {
-      Scene scene = make_scene(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1)));
+      Scene scene = scene_of(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1)));
       return record_run(scene, run.integrator.used, tolerances, output);
     };
     const Pair* const pair = pairs.emplace_back(runs_beside(key, step, run_with, run.record.warnings)).get();

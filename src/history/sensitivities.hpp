@@ -28,7 +28,8 @@ struct Run;
 /// and the derivative at fixed time is d(X)/d(KEY) - dX/dt d(time)/d(KEY), with the slope on the side of the row.
 /// Derivatives are NaN after the first event that differs between the runs, and in output rows that lie before an event
 /// in one run and after it in another.
-/// @param why  reason for which the derivatives are not integrated with the run
-void add_sensitivities(Run& run, const std::string& why);
+/// @param why       reason for which the derivatives are not integrated with the run
+/// @param scene_of  makes the scene of a scenario with another value of a key
+void add_sensitivities(Run& run, const std::string& why, const std::function<Scene(const CheckedScenario&)>& scene_of);
 
 }  // namespace monograin

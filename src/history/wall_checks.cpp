@@ -68,11 +68,11 @@ std::vector<WallPlane> foremost(std::span<const WallPlane> walls) {
 
 /// True if walls can enclose a space. Two opposite walls cannot, however close they are: they leave the sides open.
 bool can_enclose(std::span<const ContactClass> classes) {
-  std::vector<WallPlane> around_a_ball;
+  std::vector<WallPlane> tangent_walls;
   for (const ContactClass& c : classes) {
-    for (const Eigen::Vector3d& normal : c.normals) around_a_ball.push_back({normal, 1.0});
+    for (const Eigen::Vector3d& normal : c.normals) tangent_walls.push_back({normal, 1.0});
   }
-  return std::isfinite(space_between(around_a_ball));
+  return std::isfinite(space_between(tangent_walls));
 }
 
 /// Rows in which a step or the run ends.

@@ -85,7 +85,7 @@ std::vector<KeySpec> root_keys() {
       {.name = "output", .meaning = "what is recorded", .kind = Kind::table, .example = "[output]"},
       {.name = "numerics", .meaning = "how the equations are solved", .kind = Kind::table, .example = "[numerics]"},
       {.name = "sensitivities",
-       .meaning = "what the history is differentiated by",
+       .meaning = "numbers with respect to which the history is differentiated",
        .kind = Kind::table,
        .example = "[sensitivities]"},
   };
@@ -104,7 +104,7 @@ std::vector<KeySpec> particle_keys() {
 std::vector<KeySpec> output_keys() {
   return {
       {.name = "points",
-       .meaning = "rows per step, at equal intervals of what it really covers; 0: the integrator's own steps",
+       .meaning = "rows for each step, at equal intervals of the part that was run; 0: the integrator's own steps",
        .kind = Kind::integer,
        .range = {.lower = 0.0, .upper = k_most_points},
        .default_value = 200.0},
@@ -445,7 +445,8 @@ std::vector<StepForm> step_forms(const Model& model) {
     forms.push_back(ramp_form(Step::Kind::displacement, std::move(displacement), Dimension::velocity, model));
     forms.push_back(ramp_form(Step::Kind::force, std::move(force), Dimension::force_rate, model));
   }
-  const string_view hold = model.has_walls() ? "keep the wall where it is" : "keep what is prescribed";
+  const string_view hold = model.has_walls() ? "keep the controlled quantity constant: the displacement or the force"
+                                             : "keep what is prescribed";
   forms.push_back({Step::Kind::hold, "hold", {mark_key("hold", hold), duration_key(true), until_key(model)}});
   if (model.has_walls()) {
     forms.push_back(

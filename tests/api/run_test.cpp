@@ -61,6 +61,7 @@ TEST(Run, EndsWhenItIsAskedToAndIsTheSameOtherwise) {
       const RunResult watched = run(scenario, {.stop = [&asked] { return ++asked < 0; }});
       EXPECT_GT(asked, 0) << name;
       EXPECT_EQ(watched.integrator, plain.integrator) << name;
+      EXPECT_EQ(watched.events.words("event"), plain.events.words("event")) << name;
       for (const std::string_view column : plain.history.names()) {
         const auto one = plain.history[column];
         const auto other = watched.history[column];

@@ -49,8 +49,13 @@ TEST(Scenario, HoldsOneValueOfAKeyThatIsSetAgainAndAgain) {
   EXPECT_EQ(scenario.overrides().size(), count);
   EXPECT_EQ(run(scenario).history["axial.displacement"].back(), 0.05);
   // A table takes the place of the keys in it, so that their order counts.
-  scenario.set("loading.steps[0].duration", 2).set("loading.steps[0]", "x").set("loading.steps[0].duration", 3);
+  for (int k = 1; k <= 100; ++k)
+    scenario.set("loading.steps[0].duration", k).set("loading.steps[0].displacement", 1e-4);
+  EXPECT_EQ(scenario.overrides().size(), count);
+  scenario.set("loading.steps[0]", "x").set("loading.steps[0].duration", 3);
   EXPECT_EQ(scenario.overrides().size(), count + 2);
+  scenario.set("loading.steps[0].durations", 1);
+  EXPECT_EQ(scenario.overrides().size(), count + 3) << "the name of another key begins alike";
 }
 
 TEST(Scenario, ThatIsSetKeyByKeyRuns) {

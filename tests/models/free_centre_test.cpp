@@ -72,7 +72,7 @@ std::vector<Step> steps(const std::vector<Share>& program, double depth, double 
   return all;
 }
 
-const char* const k_forms[] = {"auto", "cvode-adams", "cvode-bdf", "ida"};
+const char* const k_forms[] = {"auto", "cvode-adams", "cvode-bdf", "ida", "odeint-dopri5"};
 
 class FreeCentre : public testing::TestWithParam<Particle> {
  protected:
@@ -217,11 +217,16 @@ TEST_P(FreeCentre, IsCarriedByAForceAcrossAGapToTheWallInThePath) {
   for (const char* const integrator : k_forms) {
     const TestRun apart = behind_a_gap(gap, integrator);
     ASSERT_EQ(apart.record.status, RunStatus::complete) << integrator << ": " << apart.record.message;
-    EXPECT_NEAR(apart.time_of("contact-made"), 0.0, 1e-8) << integrator;
+    // The weak spring that holds a centre under cel bears a little of the force before the contact does.
+    EXPECT_NEAR(apart.time_of("contact-made"), 0.0, GetParam().name == "cel" ? 1e-8 : 0.0) << integrator;
     EXPECT_NEAR(apart.last("a.displacement"), touching.last("a.displacement") + gap, 1e-6 * depth) << integrator;
     EXPECT_NEAR(apart.last("centre_z"), touching.last("centre_z") - 0.8 * gap, 1e-6 * depth) << integrator;
     for (const char* const name : {"a.force", "b.force"})
       EXPECT_NEAR(apart.last(name), 0.3 * force, 1e-6 * force) << integrator << ", " << name;
+    for (const char* const name : {"work", "stored_energy", "apparent_radius"}) {
+      if (!touching.record.history.find(name)) continue;
+      EXPECT_NEAR(apart.last(name), touching.last(name), 1e-6 * std::abs(touching.last(name))) << integrator << name;
+    }
   }
 }
 

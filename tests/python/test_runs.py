@@ -143,7 +143,7 @@ def test_replacing_again_keeps_the_order_and_does_not_pile_up():
         scenario = scenario.replace({f"loading.steps[{index}]": step})
     for _ in range(3):
         scenario = scenario.replace({"material.youngs_modulus": 1e9, "material.poisson_ratio": 0.2})
-    assert len(scenario.overrides) == 6
+    assert len(scenario.overrides) == 5
 
 
 def test_every_kind_of_value_can_be_replaced():
@@ -346,8 +346,11 @@ def test_a_scenario_stays_the_same_in_another_working_directory(tmp_path, monkey
     monkeypatch.chdir(tmp_path / "b")
     assert mg.Scenario(text).run()["axial.force"].max() != largest
     assert hash(scenario) == name
-    for other in (copy.copy(scenario), scenario.replace({"title": "again"}), pickle.loads(pickle.dumps(scenario))):
+    changed = scenario.replace({"title": "again"})
+    for other in (copy.copy(scenario), changed, pickle.loads(pickle.dumps(scenario)), mg.Scenario(changed.to_toml())):
         assert other.run()["axial.force"].max() == largest
+    radius = mg.parameters(scenario)["radius"].value
+    assert scenario.prepare(["particle.radius"]).run([radius])["axial.force"].max() == largest
 
 
 def test_overrides_of_one_key_do_not_pile_up():
@@ -355,6 +358,9 @@ def test_overrides_of_one_key_do_not_pile_up():
     for value in (40e6, 50e6, 60e6):
         scenario = scenario.replace({"material.yield_stress": value}).replace({"material.youngs_modulus": 20.0 * value})
     assert scenario.overrides == ["material.yield_stress=60000000.0", "material.youngs_modulus=1200000000.0"]
+    for duration in (1.0, 2.0, 3.0):
+        scenario = scenario.replace({f"loading.steps[{k}].duration": duration for k in range(2)})
+    assert len(scenario.overrides) == 4
     # A table takes the place of its keys, so that the order counts.
     steps = [{"displacement": "0.1 R0", "duration": 1.0}]
     scenario = mg.scenario("die").replace({"loading.steps[0].duration": 2.0}).replace({"loading.steps": steps})
@@ -373,6 +379,7 @@ def test_the_name_of_a_file_is_no_text_of_a_scenario(tmp_path):
     for name in (tmp_path / "a.toml", "a.toml"):
         with pytest.raises(TypeError, match="Scenario.load"):
             mg.Scenario(name)
+    assert mg.Scenario(mg.scenario("die").text + "\n# from die.toml").model == "mdr"
     with pytest.raises(TypeError, match="overrides"):
         mg.Scenario(mg.scenario("die").text, overrides="title='x'")
 
@@ -414,12 +421,17 @@ def test_a_copied_or_pickled_run_is_the_same_run(tmp_path):
                 assert (tmp_path / "again" / file).read_bytes() == (tmp_path / "saved" / file).read_bytes()
 
 
-def test_ctrl_c_ends_a_run(tmp_path):
-    code = """
+MANY_ROWS = {"output.points": 1_000_000}
+SENSITIVE = {"output.points": 100_000, "sensitivities.keys": ["material.yield_stress", "particle.radius"]}
+
+
+@pytest.mark.parametrize("values", [MANY_ROWS, SENSITIVE])
+def test_ctrl_c_ends_a_run(values, tmp_path):
+    code = f"""
         import os, signal, threading, time
         import monograin as mg
 
-        scenario = mg.scenario("cycles").replace({"output.points": 1_000_000})
+        scenario = mg.scenario("cycles").replace({values})
         threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
         start = time.perf_counter()
         try:
@@ -435,6 +447,9 @@ def test_ctrl_c_ends_a_run(tmp_path):
 def test_an_empty_cell_among_numbers_is_nan_and_units_tell_columns_apart(tmp_path):
     (tmp_path / "table.csv").write_text("a[m],a[mm],word\n1,,x\n3,4,\n")
     table = mg.Table.read_csv(tmp_path / "table.csv")
+    assert table.columns == ["a[m]", "a[mm]", "word"]
+    assert table.units == {"a[m]": "m", "a[mm]": "mm", "word": ""}
+    assert table.to_pandas()["a[mm]"][1] == 4.0
     assert table["a[m]"].tolist() == [1.0, 3.0]
     assert np.isnan(table["a[mm]"][0]) and table["a[mm]"][1] == 4.0
     assert table["word"].tolist() == ["x", ""]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import json
+import pickle
 import tomllib
 
 import numpy as np
@@ -129,6 +131,11 @@ def test_a_calibration_takes_a_run_and_its_frame():
             }
         )
         assert fit.values["material.youngs_modulus"] == pytest.approx(70e9, rel=1e-6)
+        frame = truth.to_pandas()
+        frame["axial.force"] = frame["axial.force"].astype(object)
+        frame.loc[3, "axial.force"] = "1,5"
+        with pytest.raises(ValueError, match="1,5"):
+            mg.calibrate({"scenario": mg.scenario("hertz"), "data": {"file": frame, "x": "axial.displacement", "y": "axial.force"}, "free": {}})
         fit.info.clear()
         assert fit.values
 
@@ -293,3 +300,16 @@ def test_an_unknown_ready_scenario_names_those_there_are():
 
 def test_the_version_is_that_of_the_program(run_program, tmp_path):
     assert run_program("--version", cwd=tmp_path).stdout.strip() == f"monograin {mg.__version__}"
+
+
+@pytest.mark.parametrize("again", [copy.copy, lambda result: pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(result))))])
+def test_a_calibration_and_a_design_can_be_pickled_and_copied(again):
+    fit = mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml")
+    other = again(fit)
+    assert other.parameters == fit.parameters
+    assert (str(other), repr(other), other.notes, other.scenario_text) == (str(fit), repr(fit), fit.notes, fit.scenario_text)
+    assert_array_equal(other.fit["residual"], fit.fit["residual"])
+    plan = mg.design(next((mg.scenario_folder() / "design").glob("*.toml")))
+    assert str(again(plan)) == str(plan)
+    assert again(plan).best_by_volume == plan.best_by_volume
+    assert_array_equal(again(plan).table["standard_error"], plan.table["standard_error"])

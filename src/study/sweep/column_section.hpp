@@ -27,7 +27,7 @@ void add_formula_fault(FaultList& faults, SourceLocation where, const std::strin
                        const ExpressionError& error, const std::string& advice = {});
 
 /// Checks that the formulas in `results` can be read, name columns of the results, and none that `columns` leaves out.
-/// @param keys  that the sweep varies; each is a column of the results
+/// @param keys  of the factors; each is a column of the results
 /// @return the columns of the histories that the formulas need
 [[nodiscard]] std::vector<PlacedColumn> columns_of_formulas(Reading& reading, const Section& root,
                                                             std::span<const std::string> keys);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -38,6 +39,8 @@ constexpr const char* k_journal_extension = ".journal";
 constexpr std::string_view k_program_line = "# program: monograin ";
 constexpr std::size_t k_part = std::size_t{1} << 20U;  // bytes of the results that are written at once
 constexpr const char* k_digest_line = "# sweep_digest: ";
+/// Tables that are made from the results, each with a figure of the same name.
+constexpr std::array k_made_from_results{k_bands_file, k_sensitivities_file};
 
 // --- one run
 
@@ -190,7 +193,8 @@ void prepare(const fs::path& folder) {
     throw std::runtime_error(
         fmt::format("{}: holds the result of another command; choose another folder", folder.string()));
   }
-  for (const char* name : {k_results, k_bands_file, k_sensitivities_file}) {
+  expect_own_file(folder / k_results, folder / k_results);
+  for (const char* name : k_made_from_results) {
     expect_own_file(folder / name, folder / name);
     figure::expect_own_figure((folder / name).replace_extension(".svg"));
   }
@@ -205,7 +209,7 @@ void prepare(const fs::path& folder) {
 /// Removes what an earlier sweep of other content has left beside its results: percentiles, indices, figures,
 /// histories. prepare() has found them to be the program's own.
 void remove_leftovers(const Sweep& sweep, const fs::path& folder) {
-  for (const char* name : {k_bands_file, k_sensitivities_file}) {
+  for (const char* name : k_made_from_results) {
     for (const char* extension : {".csv", ".svg", ".gp", ".dat"}) {
       fs::remove((folder / name).replace_extension(extension));
     }

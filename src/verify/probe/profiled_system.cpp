@@ -94,31 +94,13 @@ class Profiled final : public WrappedSystem {
   double clock_cost_;
 };
 
-class Limited final : public WrappedSystem {
+/// Throws OutOfTime if the processor time of the thread is up. It grows no faster than the steady clock, which is
+/// cheaper to read: that shows when to read the former again.
+class TimeLimit {
  public:
-  Limited(std::unique_ptr<HybridSystem> system, double end) : WrappedSystem(std::move(system)), end_(end) {}
+  explicit TimeLimit(double end) : end_(end) {}
 
-  void rates(double xi, View y, State dy) override {
-    check_time();
-    WrappedSystem::rates(xi, y, dy);
-  }
-  void residual(double xi, View y, View dy, State res) override {
-    check_time();
-    WrappedSystem::residual(xi, y, dy, res);
-  }
-  void solve(double xi, State y) override {
-    check_time();
-    WrappedSystem::solve(xi, y);
-  }
-  void guard_values(double xi, View y, State values) override {
-    check_time();
-    WrappedSystem::guard_values(xi, y, values);
-  }
-
- private:
-  /// Throws OutOfTime if the time is up. The processor time of a thread grows no faster than the steady clock, which is
-  /// cheaper to read: it shows when to read the former again.
-  void check_time() {
+  void operator()() {
     const Clock::time_point now = Clock::now();
     if (now < next_sample_) return;
     const double left = end_ - thread_seconds();
@@ -126,6 +108,7 @@ class Limited final : public WrappedSystem {
     next_sample_ = now + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(left));
   }
 
+ private:
   double end_;
   Clock::time_point next_sample_;
 };
@@ -258,7 +241,7 @@ double thread_seconds() {
 }
 
 std::unique_ptr<HybridSystem> limited(std::unique_ptr<HybridSystem> system, double end) {
-  return std::make_unique<Limited>(std::move(system), end);
+  return std::make_unique<WatchedSystem>(std::move(system), TimeLimit(end));
 }
 
 std::unique_ptr<HybridSystem> sampling_beyond(std::unique_ptr<HybridSystem> system, double factor) {

@@ -474,6 +474,24 @@ TEST_F(SweepFiles, WhatCannotBeRunIsARowWithTheReason) {
   }
 }
 
+TEST_F(SweepFiles, NothingOfAnEarlierSweepStaysBesideTheResultsOfAnother) {
+  const std::string bands = "\n[bands]\nx = \"time\"\ny = [\"axial.force\"]\n";
+  const Sweep first = read(k_grid + bands);
+  static_cast<void>(results(first, "out"));
+  ASSERT_EQ(std::distance(fs::directory_iterator(path("out") / "histories"), {}), 12);
+  for (const char* name : {"bands.csv", "bands.gp", "sensitivity.csv"})
+    write(std::string("out/") + name, "# title: a\n");
+  write("out/bands.svg", "<svg/>");
+  write("out/histories/notes.txt", "of the user");
+  write("out/plan.txt", "of the user");
+  const std::string only = "scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { values = [0.2, 0.3] }\n";
+  static_cast<void>(results(read(only + bands), "out"));
+  EXPECT_EQ(names_in(path("out")), (std::set<std::string>{"histories", "plan.txt", "results.csv"}));
+  EXPECT_EQ(names_in(path("out") / "histories"), (std::set<std::string>{"1.csv", "2.csv", "notes.txt"}));
+  static_cast<void>(results(read(only), "out"));
+  EXPECT_EQ(names_in(path("out") / "histories"), std::set<std::string>{"notes.txt"});
+}
+
 TEST_F(SweepFiles, TheOutcomeCountsRunsThatEndedEarly) {
   write("small.toml", std::string(k_scenario).replace(std::string(k_scenario).find("0.1 R0"), 6, "0.4 R0"));
   const Sweep sweep = read(k_grid);
@@ -506,24 +524,6 @@ TEST_F(SweepFiles, HistoriesAreKeptIfAskedFor) {
 // --- going on
 
 /// The journal of a sweep that was stopped after all runs but before its results were written.
-TEST_F(SweepFiles, NothingOfAnEarlierSweepStaysBesideTheResultsOfAnother) {
-  const std::string bands = "\n[bands]\nx = \"time\"\ny = [\"axial.force\"]\n";
-  const Sweep first = read(k_grid + bands);
-  static_cast<void>(results(first, "out"));
-  ASSERT_EQ(std::distance(fs::directory_iterator(path("out") / "histories"), {}), 12);
-  for (const char* name : {"bands.csv", "bands.gp", "sensitivity.csv"})
-    write(std::string("out/") + name, "# title: a\n");
-  write("out/bands.svg", "<svg/>");
-  write("out/histories/notes.txt", "of the user");
-  write("out/plan.txt", "of the user");
-  const std::string only = "scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { values = [0.2, 0.3] }\n";
-  static_cast<void>(results(read(only + bands), "out"));
-  EXPECT_EQ(names_in(path("out")), (std::set<std::string>{"histories", "plan.txt", "results.csv"}));
-  EXPECT_EQ(names_in(path("out") / "histories"), (std::set<std::string>{"1.csv", "2.csv", "notes.txt"}));
-  static_cast<void>(results(read(only), "out"));
-  EXPECT_EQ(names_in(path("out") / "histories"), std::set<std::string>{"notes.txt"});
-}
-
 class StoppedSweep : public SweepFiles {
  protected:
   StoppedSweep() {
