@@ -315,7 +315,9 @@ def write_language(schema):
     for key, form in steps_of(definitions["mdr-step"]):
         text += f"\n`{key}`\n\n" + key_table(form["properties"], form["required"], (), (key, *ORDER))
     text += "\n### `until`\n\nOne or several conditions; the first that is met ends the step.\n\n"
-    text += key_table(until_of(definitions["mdr-step"]), [])
+    conditions = dict(until_of(definitions["mdr-step"]))
+    conditions["event"] = {"type": "string", "description": "name of an [event](events.md) of the model"}
+    text += key_table(conditions, [])
     text += "\n### `[output]`\n\n" + key_table(walls["output"]["properties"], [])
     text += "\n### `[numerics]`\n\n" + key_table(walls["numerics"]["properties"], [], (), ORDER)
     text += "\n### `[sensitivities]`\n\n" + key_table(walls["sensitivities"]["properties"], ["keys"])
@@ -428,6 +430,16 @@ def column_table(columns, meanings, used):
     return table(["heading", "holds", "unit"], rows)
 
 
+def write_limits():
+    """Codes of the limits at which runs stop, in the order of their list in the code."""
+    source = (ROOT / "models" / "system" / "limit.cpp").read_text(encoding="utf-8")
+    entries = re.findall(r'Words\{Limit::\w+,\s*"([^"]+)",\s*((?:"[^"]*"\s*)+)\}', source)
+    if len(entries) != source.count("Words{Limit::"):
+        fail("the list of limits in models/system/limit.cpp is not written as expected")
+    rows = [[f"`{code}`", "".join(re.findall(r'"([^"]*)"', sentence))] for code, sentence in entries]
+    write("limit-codes.md", table(["code", "message"], rows))
+
+
 def write_models(program, schema, ready):
     names = []
     rows = []
@@ -510,9 +522,11 @@ def write_models(program, schema, ready):
     write("presets.md", table(["preset", "model", "from", "lacks"], presets))
     lines = []
     for event in sorted(events_of):
-        models = events_of[event]
-        meanings = list(dict.fromkeys(meaning for _, meaning in models))
-        lines.append([f"`{event}`", "; ".join(meanings), ", ".join(f"`{name}`" for name, _ in models)])
+        models_of = {}
+        for name, meaning in events_of[event]:
+            models_of.setdefault(meaning, []).append(f"`{name}`")
+        for meaning, models in models_of.items():
+            lines.append([f"`{event}`", meaning, ", ".join(models)])
     write("events.md", table(["event", "meaning", "models"], lines))
     listed = []
     for name in names:
@@ -891,6 +905,7 @@ def main():
         draw_wedge(program, pathlib.Path(scratch))
     models = write_models(program, schema, ready)
     write_language(schema)
+    write_limits()
     write_measurements(program)
     write_tables()
     commands = write_commands(program)

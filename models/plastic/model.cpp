@@ -172,7 +172,7 @@ constexpr string_view k_loading_only = "walls only come nearer, unless unloading
 constexpr string_view k_extension =
     "unloading = \"mdr\" is not of the source: A = 4 p a/E*, b = a, and the unloading branch of model mdr; a contact "
     "that "
-    "has not yielded goes back the way it came";
+    "has not yielded unloads along its loading curve";
 
 constexpr string_view k_energy =
     "warned: dissipation that falls by more than 1e-6 of the energy, possible with unloading = \"mdr\" where the "
@@ -431,7 +431,7 @@ Law semimech_law(const ModelInput& input) { return make_semimech(semimech_materi
 Model similarity_model() noexcept {
   return Functions<similarity_law, strength>::of(
       {.name = "similarity",
-       .summary = "rigid-plastic power-law contact by the similarity solution, every contact for itself",
+       .summary = "rigid-plastic power-law contact by the similarity solution, contacts independent of each other",
        .references = k_similarity_references,
        .source = "Shahin (2021), section 2.2 and appendix B",
        .material = k_power_law_material,

@@ -185,7 +185,7 @@ void add_calibrate_command(CLI::App& app, Action& action) {
       ->check(CLI::Range(1e-6, 1.0 - 1e-6));
   command->add_flag("--report", options->has_report,
                     "Leave report.md and report.pdf, too: data, figure, intervals, residuals, warnings");
-  command->add_flag("--quiet", options->is_quiet, "Say nothing but the result, warnings and errors");
+  command->add_flag("--quiet", options->is_quiet, "Print the result, warnings and errors only");
   command->add_flag("--strict", options->is_strict, "Exit with 5 where the fit is bad and a warning says so");
   command->footer("Example: monograin calibrate scenarios/calibrate/uniaxial.toml");
   command->callback([options, &action] { action = [options] { return run_calibrations(*options); }; });

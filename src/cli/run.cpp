@@ -157,7 +157,7 @@ void add_run_command(CLI::App& app, Action& action) {
       ->expected(1)
       ->take_all();
   command->add_flag("--plot", options->draws_figure, "Draw figure.svg beside the curves");
-  command->add_flag("--quiet", options->is_quiet, "Say nothing but errors");
+  command->add_flag("--quiet", options->is_quiet, "Print errors only");
   command->footer("Example: monograin run scenarios/die.toml --set loading.steps[0].displacement='0.3 R0' --plot");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

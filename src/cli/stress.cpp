@@ -72,7 +72,7 @@ int stress(const CommandOptions& options) {
 void add_stress_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<CommandOptions>();
   CLI::App* command = app.add_subcommand(
-      "stress", "Hunt for numerical instability: extreme and random scenes of every model, and what must hold of them");
+      "stress", "Run random and extreme scenes of every model, and check what must hold of their results");
   command->add_option("FILE", options->files, "Check these scenarios instead of drawn ones");
   const std::map<std::string, double> units{{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}};
   command->add_option("--time", options->seconds, "How long: 60s, 5min, 1h [60s]")

@@ -142,7 +142,7 @@ void add_sweep_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<SweepCommandOptions>();
   CLI::App* command = app.add_subcommand(
       "sweep",
-      "Run one scenario many times over a grid, a table or a space-filling design; goes on where it was stopped");
+      "Run one scenario many times over a grid, a table or a space-filling design, or continue a stopped sweep");
   command->add_option("FILE", options->file, "Sweep file (TOML)")->required();
   command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
       ->check(CLI::Range(1, 1024));
@@ -158,7 +158,8 @@ void add_sweep_command(CLI::App& app, Action& action) {
 void add_sensitivity_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<SensitivityOptions>();
   CLI::App* command = app.add_subcommand(
-      "sensitivity", "Say which key the spread of results is due to: Sobol indices, Morris screening");
+      "sensitivity",
+      "Estimate the share of the results' variance that each key causes: Sobol indices, Morris screening");
   command->add_option("FILE", options->file, "Sweep file (TOML) with design = \"saltelli\" or \"morris\"")->required();
   command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
       ->check(CLI::Range(1, 1024));

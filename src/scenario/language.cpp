@@ -309,7 +309,8 @@ std::vector<KeySpec> loading_keys(const Model& model) {
        .kind = Kind::tables,
        .example = "[[loading.wall]]",
        .only_with = "walls"},
-      steps_key("what the driven walls do, one step after another"),
+      steps_key("what the driven walls do, one step after another; walls of [[loading.wall]] may have steps of their "
+                "own instead"),
   };
 }
 
