@@ -60,11 +60,12 @@ void make_folder(const fs::path& folder) {
 
 /// Power of ten by which the numbers of an axis are divided if they are too long for the room beside it; else 0.
 [[nodiscard]] int shared_power(const AxisRange& range) {
-  constexpr int k_least = -3;
+  constexpr int k_least = -3;  // of the tics' distance, too: 0.0002 is too long
   constexpr int k_most = 4;
-  const double largest = std::max(std::abs(range.lowest), std::abs(range.highest));
-  const int power = static_cast<int>(std::floor(std::log10(largest)));
-  return power < k_least || power > k_most ? power : 0;
+  const auto power_of_ten = [](double value) { return static_cast<int>(std::floor(std::log10(value))); };
+  const int power = power_of_ten(std::max(std::abs(range.lowest), std::abs(range.highest)));
+  const bool is_fine = range.tic_step > 0.0 && power_of_ten(range.tic_step) < k_least;
+  return power < k_least || power > k_most || is_fine ? power : 0;
 }
 
 /// Tics with numbers that are divided by a power of ten.

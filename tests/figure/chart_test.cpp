@@ -263,6 +263,14 @@ TEST(Chart, PutsThePowerOfTenOfItsAbscissaBesideTheUnit) {
   EXPECT_EQ(script.find("×10"), std::string::npos) << script;
 }
 
+TEST(Chart, DividesNumbersThatNeedFourDecimals) {
+  Chart chart = chart_of({series("a")});
+  chart.panels[0].series[0].y = {0.0, 1e-3, 0.5e-3};
+  EXPECT_NE(script_of(chart).find("'×10^{−3}'"), std::string::npos) << script_of(chart);
+  chart.panels[0].series[0].y = {0.0, 5e-3, 2.5e-3};
+  EXPECT_EQ(script_of(chart).find("×10"), std::string::npos) << script_of(chart);
+}
+
 TEST(Label, HasMinusSignsAndKeepsItsHyphens) {
   EXPECT_EQ(label_string("a - b"), "'a − b'");
   EXPECT_EQ(label_string("-1"), "'−1'");
