@@ -110,7 +110,7 @@ ContactState state_at(const HardeningLaw& law, double x) {
 
 ContactState state_in(const HardeningLaw& law, Regime regime, double x) {
   if (regime == Regime::open) return {};
-  if (!(x > 0.0)) throw std::domain_error("gamma/2R = " + number_text(x) + " is no contact");
+  if (!(x > 0.0)) throw std::domain_error("displacement/R0 = " + number_text(x) + " is no contact");
   const auto [reduced, slope] = reduced_pressure(law, regime, x);
   const double half = 0.5 * law.exponent;
   const double factor = std::pow(x, half);

@@ -127,8 +127,8 @@ constexpr Term k_low{"low-compressibility", "least mean pressure: the pores begi
 constexpr Term k_impingement{"impingement", "the circles of neighbouring contacts meet; the law does not change there"};
 constexpr Term k_step_end{"step-end", "end of a step of the program"};
 constexpr Term k_until_met{"until-met", "a step ended early by its condition"};
-constexpr Term k_limit{"limit",
-                       "the walls meet at gamma/2R = 1, or another end of the equations; the message says which"};
+constexpr Term k_limit{
+    "limit", "the walls meet at displacement/R0 = 1, or another end of the equations; the message says which"};
 
 constexpr std::array k_similarity_events{k_made,   k_lost,     k_touched,   k_reversal,
                                          k_reload, k_step_end, k_until_met, k_limit};
@@ -156,7 +156,7 @@ constexpr std::array k_hardening_events{
     k_touched,
     Term{"low-compressibility",
          "the pores begin to close: the slope of H/x^(mu/2) is zero, with H the mean pressure over kappa and x = "
-         "gamma/2R (die, hydrostatic)"},
+         "displacement/R0 (die, hydrostatic)"},
     Term{"zero-porosity", "the particle fills its cell; the pressure is infinite there, and the run ends just before"},
     k_impingement,
     k_reversal,
@@ -188,11 +188,12 @@ constexpr string_view k_hardening_energy =
     "the softer it is, and contacts just before zero porosity";
 
 constexpr std::array<string_view, 7> k_similarity_domain{
-    "small strains: the source sees the law leave its calculations at gamma/2R of about 0.03; a warning beyond",
-    "against finite elements (1/m = 0.327, two walls) the force is too high by 15, 32 and 68 % at gamma/2R = 0.01, "
+    "small strains: the source sees the law leave its calculations at displacement/R0 of about 0.03; a warning beyond",
+    "against finite elements (1/m = 0.327, two walls) the force is too high by 15, 32 and 68 % at displacement/R0 = "
+    "0.01, "
     "0.03 and 0.1",
     "every contact is independent of the others",
-    "gamma/2R below 1",
+    "displacement/R0 below 1",
     k_loading_only,
     k_extension,
     k_similarity_energy,
@@ -202,15 +203,19 @@ constexpr std::array<string_view, 12> k_semimech_domain{
     "E/((1-nu^2) Y) from 22.0931 on; a warning outside 117.24 to 5933.40",
     "die and hydrostatic: nu below 0.5; a warning outside E/Y = 100 to 5000, nu = 0.2 to 0.48, "
     "E/(3 (1-2 nu) Y) = 64 to 28000",
-    "gamma/2R below 1; a warning beyond 0.5 (simple) and 0.01 beyond zero porosity (die, hydrostatic)",
+    "displacement/R0 below 1; a warning beyond 0.5 (simple) and 0.01 beyond zero porosity (die, hydrostatic)",
     "elastic regime: the pressure is Hertz's but the contact radius is not, so the force is D1^2 times that of Hertz: "
     "1.35 to 3.07 (simple), 1.42 to 3.22 (die), 1.58 to 3.59 (hydrostatic)",
-    "too stiff below gamma/2R = 0.03 against finite elements, at 0.005, 0.01, 0.02 by 58, 35, 19 % (simple), 50, 33, "
+    "too stiff below displacement/R0 = 0.03 against finite elements, at 0.005, 0.01, 0.02 by 58, 35, 19 % (simple), "
+    "50, 33, "
     "18 % (die), 66, 37, 15 % (hydrostatic); a warning where a whole run lies there",
-    "lateral contacts of a die: forces 2.1 to 3.5 times those of finite elements for gamma/2R from 0.03 to 0.1; a "
+    "lateral contacts of a die: forces 2.1 to 3.5 times those of finite elements for axial displacement/R0 from 0.03 "
+    "to 0.1; "
+    "a "
     "warning",
     "the law's second derivative jumps at its regime boundaries and is infinite just after the greatest pressure",
-    "lateral contacts of a die: force and area for gamma/2R up to 0.1, pressure from the onset (about 0.41) on, "
+    "lateral contacts of a die: force and area for axial displacement/R0 up to 0.1, pressure from the onset (about "
+    "0.41) on, "
     "nothing "
     "between; E/((1-nu^2) Y) from 163.08 to 4954.40, a warning outside",
     "lateral contacts do not act back on the axial ones",
@@ -220,9 +225,9 @@ constexpr std::array<string_view, 12> k_semimech_domain{
 };
 
 constexpr std::array<string_view, 6> k_hardening_domain{
-    "rigid-plastic: no elastic strain; the run ends where the particle fills its cell (die: gamma/2R = 0.4764, "
+    "rigid-plastic: no elastic strain; the run ends where the particle fills its cell (die: displacement/R0 = 0.4764, "
     "hydrostatic: 0.1940)",
-    "simple: a warning beyond gamma/2R = 0.5",
+    "simple: a warning beyond displacement/R0 = 0.5",
     "lateral contacts of a die: the source has no law for them",
     k_loading_only,
     k_extension,

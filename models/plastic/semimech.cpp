@@ -241,7 +241,7 @@ ContactState state_at(const SemimechLaw& law, double x) {
 
 ContactState state_in(const SemimechLaw& law, Regime regime, double x) {
   if (regime == Regime::open) return {};
-  if (!(x > 0.0)) throw std::domain_error("gamma/2R = " + number_text(x) + " is no contact");
+  if (!(x > 0.0)) throw std::domain_error("displacement/R0 = " + number_text(x) + " is no contact");
   return loaded_contact(regime, contact_radius(law.radius, x), pressure_in(law, regime, x));
 }
 

@@ -23,15 +23,18 @@ constexpr double k_least_trusted = 0.03;
 std::string_view early_stiffness_warning(Configuration configuration) noexcept {
   switch (configuration) {
     case Configuration::simple:
-      return "the whole run lies where the law is too stiff: below gamma/2R = 0.03 its force (simple) is 19 to 58 % "
+      return "the whole run lies where the law is too stiff: below displacement/R0 = 0.03 its force (simple) is 19 to "
+             "58 % "
              "above finite elements, and in the elastic regime 2.20 to 3.06 times that of Hertz over the fitted "
              "materials";
     case Configuration::die:
-      return "the whole run lies where the law is too stiff: below gamma/2R = 0.03 its force (die) is 18 to 50 % "
+      return "the whole run lies where the law is too stiff: below displacement/R0 = 0.03 its force (die) is 18 to 50 "
+             "% "
              "above finite elements, and in the elastic regime 2.30 to 3.21 times that of Hertz over the fitted "
              "materials";
     case Configuration::hydrostatic:
-      return "the whole run lies where the law is too stiff: below gamma/2R = 0.03 its force (hydrostatic) is 15 to "
+      return "the whole run lies where the law is too stiff: below displacement/R0 = 0.03 its force (hydrostatic) is "
+             "15 to "
              "66 % above finite elements, and in the elastic regime 2.57 to 3.58 times that of Hertz over the fitted "
              "materials";
   }
@@ -259,21 +262,21 @@ std::vector<Diagnostic> WallLaw::warnings(double /*walls*/) const {
   }
   if (farthest_ > calibrated_end(settings_.law)) {
     result.push_back({"the walls have gone farther than the source compares the law with its calculations",
-                      "largest gamma/2R", farthest_});
+                      "largest displacement/R0", farthest_});
   }
   const auto* semimech = std::get_if<SemimechLaw>(&settings_.law);
   if (semimech != nullptr && farthest_ > 0.0 && farthest_ < k_least_trusted) {
-    result.push_back({early_stiffness_warning(semimech->configuration), "largest gamma/2R", farthest_});
+    result.push_back({early_stiffness_warning(semimech->configuration), "largest displacement/R0", farthest_});
   }
   if (lateral_law_ && farthest_ > k_least_trusted) {
     result.push_back(
-        {"forces of the lateral contacts are 2.1 to 3.5 times those of finite elements for gamma/2R from "
+        {"forces of the lateral contacts are 2.1 to 3.5 times those of finite elements for axial displacement/R0 from "
          "0.03 to 0.1",
-         "largest gamma/2R", farthest_});
+         "largest displacement/R0", farthest_});
   }
   if (has_lateral_gap_) {
     result.push_back({"the source has no law for lateral contacts in all of the range; their columns are nan there",
-                      "largest gamma/2R", farthest_});
+                      "largest displacement/R0", farthest_});
   }
   if (lateral_law_) {
     const double lambda = semimech->material.modulus_over_yield;
