@@ -5,9 +5,10 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -36,11 +37,10 @@ py::array values_of(const py::object& self, const std::string& name) {
 /// Names of the columns; the heading, with the unit, of columns that share their name.
 std::vector<std::string> names_of(const History& history) {
   const std::vector<Column>& columns = history.table().columns();
+  std::unordered_map<std::string_view, int> count;
+  for (const Column& column : columns) ++count[column.name];
   std::vector<std::string> names;
-  for (const Column& column : columns) {
-    const bool is_shared = std::ranges::count(columns, column.name, &Column::name) > 1;
-    names.push_back(is_shared ? column.heading() : column.name);
-  }
+  for (const Column& column : columns) names.push_back(count[column.name] > 1 ? column.heading() : column.name);
   return names;
 }
 

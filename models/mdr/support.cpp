@@ -136,26 +136,6 @@ bool idle_contacts_have_to_bear(const Particle& p, double xi) {
   return !is_borne(prescribed_push(p, xi)) || !is_borne(prescribed_push(p, 1.0));
 }
 
-/// Adds to a velocity of the centre the smallest one that keeps all walls out of the particle. Takes the walls in turn:
-/// a wall that enters with the velocity found so far becomes a constraint, and the walls before it are solved again.
-/// @param along  projector on the directions in which the centre can still move
-/// @return false, with the velocity unchanged, if there is no such velocity
-bool push_out(const Particle& p, std::span<const IdleWall> walls, const CentreMatrix& along, CentreVector& velocity) {
-  CentreVector now = velocity;
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    const CentreVector& normal = p.centre().direction(walls[k].contact);
-    const double rate = walls[k].rate + normal.dot(now);
-    if (rate <= k_zero_guard * (1.0 + now.norm())) continue;
-    const CentreVector path = along * normal;
-    const double share = path.squaredNorm();
-    if (!(share > k_no_direction * k_no_direction)) return false;
-    now = velocity - path * ((walls[k].rate + normal.dot(velocity)) / share);
-    if (!push_out(p, walls.first(k), along - path * path.transpose() / share, now)) return false;
-  }
-  velocity = now;
-  return true;
-}
-
 /// Velocity that idle walls add to the centre, on top of its velocity without them; none if they block the centre. Sets
 /// the rate of each wall's overlap without that addition.
 std::optional<CentreVector> velocity_of(Particle& p, std::span<IdleWall> walls, double xi, std::span<const double> y) {
@@ -164,8 +144,13 @@ std::optional<CentreVector> velocity_of(Particle& p, std::span<IdleWall> walls, 
   p.evaluate(xi, y);
   const Motion now = p.motion(p.mode.is_growing);
   for (IdleWall& wall : walls) wall.rate = overlap_rate(p, wall.contact, now);
+  std::vector<contacts::Obstacle> moving;
+  for (const IdleWall& wall : walls) moving.push_back({wall.contact, p.centre().direction(wall.contact), wall.rate});
+  const auto enters = [](const contacts::Obstacle& wall, const CentreVector& velocity) {
+    return !(wall.overlap(velocity) <= k_zero_guard * (1.0 + velocity.norm()));
+  };
   CentreVector velocity = CentreVector::Zero();
-  const bool is_free = push_out(p, walls, unconstrained_directions(p), velocity);
+  const bool is_free = contacts::clear(moving, unconstrained_directions(p), k_no_direction, enters, velocity);
   p.set_branches(before);
   p.evaluate(xi, y);
   return is_free ? std::optional(velocity) : std::nullopt;

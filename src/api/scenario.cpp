@@ -12,18 +12,6 @@
 
 namespace monograin {
 
-CheckedScenario checked(const Scenario& scenario) {
-  return parse_scenario(scenario.text(), scenario.origin(), scenario.overrides());
-}
-
-Scenario Scenario::parse(std::string text, std::string origin, std::vector<std::string> overrides) {
-  Scenario scenario;
-  scenario.text_ = std::move(text);
-  scenario.origin_ = std::move(origin);
-  scenario.overrides_ = std::move(overrides);
-  return scenario;
-}
-
 namespace {
 
 /// Path of a `key=value` text.
@@ -45,6 +33,18 @@ bool may_meet(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
+
+CheckedScenario checked(const Scenario& scenario) {
+  return parse_scenario(scenario.text(), scenario.origin(), scenario.overrides());
+}
+
+Scenario Scenario::parse(std::string text, std::string origin, std::vector<std::string> overrides) {
+  Scenario scenario;
+  scenario.text_ = std::move(text);
+  scenario.origin_ = std::move(origin);
+  scenario.overrides_ = std::move(overrides);
+  return scenario;
+}
 
 void set_override(std::vector<std::string>& overrides, std::string text) {
   for (auto earlier = overrides.rbegin(); earlier != overrides.rend(); ++earlier) {

@@ -52,6 +52,13 @@ void apply(std::string& text, std::string_view path, const std::string& new_valu
   }
 }
 
+std::string text_of(const toml::table& table) {
+  std::ostringstream text;
+  text.exceptions(std::ios::badbit);  // an allocation that fails must not cut the text
+  text << toml::toml_formatter{table} << '\n';
+  return text.str();
+}
+
 }  // namespace
 
 std::string with_values(std::string text, const std::vector<TextEdit>& edits) {
@@ -67,17 +74,6 @@ std::string with_override(const std::string& text, const std::string& key_and_va
   if (!edit) throw std::runtime_error(fmt::format("there is no value in '{}'", key_and_value));
   return with_values(text, {*edit});
 }
-
-namespace {
-
-std::string text_of(const toml::table& table) {
-  std::ostringstream text;
-  text.exceptions(std::ios::badbit);  // an allocation that fails must not cut the text
-  text << toml::toml_formatter{table} << '\n';
-  return text.str();
-}
-
-}  // namespace
 
 std::string text_of_table(std::string_view document, std::string_view key, const std::string& origin) {
   const toml::table root = parse_document(document, origin);
