@@ -145,12 +145,15 @@ std::string page_head(Format format, const Layout& layout, const std::string& fi
 std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, const Axis& y) {
   const Panel& panel = layout.panels[place];
   const Box& axes = panel.axes;
-  // Below an axis the power would meet the label; it joins the unit there.
+  // Below an axis the power would meet the label; it joins the unit there, or stands in its place.
   std::string x_label = x.label;
   std::string x_power = power_of(x);
-  if (const std::size_t unit = x_label.rfind(" [");
-      !x_power.empty() && unit != std::string::npos && x_label.ends_with(']')) {
-    x_label.insert(unit + 2, x_power + " ");
+  if (!x_power.empty() && !x_label.empty()) {
+    const std::size_t unit = x_label.rfind(" [");
+    if (unit != std::string::npos && x_label.ends_with(']'))
+      x_label.insert(unit + 2, x_power + " ");
+    else
+      x_label += fmt::format(" [{}]", x_power);
     x_power.clear();
   }
   const std::string letter =
