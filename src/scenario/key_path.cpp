@@ -84,16 +84,16 @@ class KeyFinder {
     }
     const auto stands = [&](const StepForm& form) { return table->contains(form.key); };
     const auto form = std::ranges::find_if(language_.steps, stands);
-    return form == language_.steps.end() ? no_such_path() : last_key(name, form->keys, language_.foreign_step_keys);
+    return form == language_.steps.end() ? no_such_path() : last_key(name, form->keys, form->foreign);
   }
 
   [[nodiscard]] KeyAnswer last_key(const std::string& name, std::span<const KeySpec> keys,
                                    std::span<const ForeignKey> foreign = {}) const {
-    if (const auto known = std::ranges::find(foreign, name, &ForeignKey::name); known != foreign.end()) {
-      return {{}, fmt::format("key '{}' {}", name, known->reason)};
-    }
     const KeySpec* spec = find_key(keys, name);
     if (spec == nullptr) {
+      std::string_view reason = reason_of(foreign, name);
+      if (reason.empty()) reason = reason_of(language_.homes, name);
+      if (!reason.empty()) return {{}, fmt::format("key '{}' {}", name, reason)};
       const std::vector<std::string_view> names = names_of(keys);
       const std::string suggestion = did_you_mean(name, names);
       return {{},

@@ -507,6 +507,11 @@ void add_loading(Language& language, const Model& model) {
 
   const std::string unused = fmt::format("is not used by model '{}'", model.name);
   language.foreign_step_keys = foreign_keys(k_step_keys, own_step_keys, unused);
+  for (StepForm& form : language.steps) {
+    form.foreign =
+        foreign_keys(names_of(own_step_keys), form.keys, fmt::format("does not go with '{}' in one step", form.key));
+    std::ranges::copy(language.foreign_step_keys, std::back_inserter(form.foreign));
+  }
   language.foreign_until_keys = foreign_keys(k_until_keys, language.until, unused);
   language.foreign_loading = foreign_keys(k_loading_keys, language.loading, unused);
 }
@@ -520,9 +525,22 @@ void add_material_and_options(Language& language, const Model& model) {
   language.foreign_material = foreign_keys(material_names_of_all_models(), language.material, unused);
 }
 
-}  // namespace
-
-namespace {
+void add_homes(Language& language) {
+  const auto add = [&](std::span<const KeySpec> keys, const std::string& home) {
+    for (const KeySpec& key : keys) {
+      if (reason_of(language.homes, key.name).empty()) language.homes.push_back({key.name, "belongs " + home});
+    }
+  };
+  add(language.root, "above the first table");
+  add(language.particle, "in [particle]");
+  add(language.material, "in [material]");
+  add(language.loading, "in [loading]");
+  if (find_key(language.loading, "wall") != nullptr) add(language.wall, "in [[loading.wall]]");
+  for (const StepForm& form : language.steps) add(form.keys, "in [[loading.steps]]");
+  add(language.output, "in [output]");
+  add(language.numerics, "in [numerics]");
+  if (language.model != nullptr) add(language.options, fmt::format("in [{}]", language.model->name));
+}
 
 /// @param info  null: the model is not known
 Language make_language(const Model* info) {
@@ -540,6 +558,7 @@ Language make_language(const Model* info) {
     language.foreign_tables.push_back({"particle", fmt::format("is not used by model '{}'", info->name)});
   }
   add_loading(language, info != nullptr ? *info : k_any_model);
+  add_homes(language);
   return language;
 }
 
@@ -564,6 +583,11 @@ KeySpec quantity_key(const QuantityKey& key) {
                .range = key.range};
   if (key.default_value) spec.default_value = *key.default_value;
   return spec;
+}
+
+std::string_view reason_of(std::span<const ForeignKey> foreign, string_view key) noexcept {
+  const auto found = std::ranges::find(foreign, key, &ForeignKey::name);
+  return found == foreign.end() ? string_view() : string_view(found->reason);
 }
 
 const KeySpec* find_key(std::span<const KeySpec> keys, string_view name) noexcept {

@@ -59,6 +59,9 @@ struct ForeignKey {
   std::string reason;  ///< goes on from "key 'x' ..."
 };
 
+/// Reason of a foreign key: none if no list names the key.
+[[nodiscard]] std::string_view reason_of(std::span<const ForeignKey> foreign, std::string_view key) noexcept;
+
 /// One form of a step: the key that marks it, and its other keys.
 struct StepForm {
   std::optional<Step::Kind> kind;  ///< none: a cycle
@@ -66,6 +69,7 @@ struct StepForm {
   std::vector<KeySpec> keys;
   bool takes_duration_or_rate = false;  ///< exactly one of the two is required
   std::span<const DriveKey> lateral{};  ///< keys for the lateral direction, at most one of which is allowed
+  std::vector<ForeignKey> foreign{};    ///< keys of other forms and of other models
 };
 
 inline constexpr int k_most_points = 1'000'000;
@@ -96,6 +100,8 @@ struct Language {
   std::vector<ForeignKey> foreign_loading;
   std::vector<ForeignKey> foreign_step_keys;
   std::vector<ForeignKey> foreign_until_keys;
+
+  std::vector<ForeignKey> homes;  ///< all keys, each with the table that it belongs in
 };
 
 /// Language of a model; every call returns one and the same object.

@@ -59,7 +59,7 @@ std::vector<Step> ProgramReader::read_step(const Section::Origin& table, int dep
     report_formless(table);
     return {};
   }
-  const Section section(reading_, table, form->keys, foreign_keys_of(*form));
+  const Section section(reading_, table, form->keys, form->foreign);
   if (!form->kind) return read_cycle(section, depth);
   if (form->takes_duration_or_rate) check_duration_or_rate(section);
   return {read_plain_step(section, *form)};
@@ -81,23 +81,11 @@ void ProgramReader::report_formless(const Section::Origin& table) {
     }
   }
   const std::size_t faults_before = reading_.faults.size();
-  check_names(reading_.faults, *table.table, table.place, table.label, all_keys, language_.foreign_step_keys);
+  check_names(reading_, *table.table, table.place, table.label, all_keys, language_.foreign_step_keys);
   // The key of the form is most likely misspelt, which has just been reported.
   if (reading_.faults.size() != faults_before) return;
   reading_.faults.add(table.place,
                       fmt::format("the step has nothing to do; expected exactly one of {}", fmt::join(forms, ", ")));
-}
-
-std::vector<ForeignKey> ProgramReader::foreign_keys_of(const StepForm& form) const {
-  std::vector<ForeignKey> foreign = language_.foreign_step_keys;
-  for (const StepForm& other : language_.steps) {
-    for (const KeySpec& spec : other.keys) {
-      if (find_key(form.keys, spec.name) == nullptr) {
-        foreign.push_back({spec.name, fmt::format("does not go with '{}' in one step", form.key)});
-      }
-    }
-  }
-  return foreign;
 }
 
 void ProgramReader::check_duration_or_rate(const Section& section) {

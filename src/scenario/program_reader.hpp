@@ -31,7 +31,6 @@ class ProgramReader {
   [[nodiscard]] bool is_within_limit(std::size_t steps, const SourceLocation& where);
   [[nodiscard]] const StepForm* form_of(const toml::table& table) const;
   void report_formless(const Section::Origin& table);
-  [[nodiscard]] std::vector<ForeignKey> foreign_keys_of(const StepForm& form) const;
 
   Reading& reading_;
   const Language& language_;

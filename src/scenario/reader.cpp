@@ -240,7 +240,7 @@ void read_sensitivities(Reading& reading, const Section& root, const toml::table
 CheckedScenario read_tree(const toml::table& tree, const std::string& origin, const FileTexts* files,
                           FaultList& faults) {
   const Language& language = language_of(model_to_check_against(tree));
-  Reading reading{faults};
+  Reading reading{.faults = faults, .homes = language.homes};
   const SourceLocation top{origin};
   const Section root(reading, {&tree, top, "the scenario"}, language.root, language.foreign_tables);
 

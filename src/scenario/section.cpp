@@ -45,7 +45,7 @@ std::optional<std::string> as_word(const toml::node& node) {
 
 }  // namespace
 
-std::vector<std::string_view> check_names(FaultList& faults, const toml::table& table, const SourceLocation& place,
+std::vector<std::string_view> check_names(Reading& reading, const toml::table& table, const SourceLocation& place,
                                           std::string_view label, std::span<const KeySpec> keys,
                                           std::span<const ForeignKey> foreign) {
   const std::vector<std::string_view> names = names_of(keys);
@@ -53,15 +53,16 @@ std::vector<std::string_view> check_names(FaultList& faults, const toml::table& 
   for (const auto& [key, value] : table) {
     if (find_key(keys, key.str()) != nullptr) continue;
     const SourceLocation where = place_of(key.source(), place);
-    const auto known = std::ranges::find(foreign, key.str(), &ForeignKey::name);
-    if (known != foreign.end()) {
-      faults.add(where, fmt::format("key '{}' {}", known->name, known->reason));
+    std::string_view reason = reason_of(foreign, key.str());
+    if (reason.empty()) reason = reason_of(reading.homes, key.str());
+    if (!reason.empty()) {
+      reading.faults.add(where, fmt::format("key '{}' {}", key.str(), reason));
       continue;
     }
     const std::string_view nearest = nearest_word(key.str(), names);
     if (!nearest.empty()) suggested.push_back(nearest);
-    faults.add(where,
-               fmt::format("unknown key '{}' in {}{}", shown(key.str()), label,
+    reading.faults.add(
+        where, fmt::format("unknown key '{}' in {}{}", shown(key.str()), label,
                            nearest.empty() ? "; expected one of " + listed(names) : did_you_mean(key.str(), names)));
   }
   return suggested;
@@ -69,7 +70,7 @@ std::vector<std::string_view> check_names(FaultList& faults, const toml::table& 
 
 Section::Section(Reading& reading, Origin origin, std::span<const KeySpec> keys, std::span<const ForeignKey> foreign)
     : reading_(reading), origin_(std::move(origin)), keys_(keys) {
-  misspelt_ = check_names(reading_.faults, *origin_.table, origin_.place, origin_.label, keys_, foreign);
+  misspelt_ = check_names(reading_, *origin_.table, origin_.place, origin_.label, keys_, foreign);
   for (const KeySpec& spec : keys_) {
     if (const toml::node* node = origin_.table->get(spec.name)) check_value(spec, *node);
   }

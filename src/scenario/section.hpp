@@ -19,9 +19,10 @@ namespace monograin {
 /// State that all readers of a scenario share: the list of faults, the length of R0, and numbers without a unit.
 struct Reading {
   FaultList& faults;
-  double initial_radius = 1.0;  ///< [m]
-  bool has_units = false;       ///< some quantity of the file, no time and none in R0, is written with a unit
-  bool is_of_material = false;  ///< the section that is read has constants of the material
+  double initial_radius = 1.0;          ///< [m]
+  bool has_units = false;               ///< some quantity of the file, no time and none in R0, is written with a unit
+  std::span<const ForeignKey> homes{};  ///< tables in which keys belong that are found elsewhere
+  bool is_of_material = false;          ///< the section that is read has constants of the material
   /// Numbers without a unit whose value in SI units is unlikely, a sentence each.
   std::vector<std::string> doubtful_lengths{};
   std::vector<std::string> doubtful_stresses{};
@@ -29,7 +30,7 @@ struct Reading {
 
 /// Reports keys that are neither among `keys` nor, with their reason, among `foreign`.
 /// @return the suggestions made for misspelt keys
-std::vector<std::string_view> check_names(FaultList& faults, const toml::table& table, const SourceLocation& place,
+std::vector<std::string_view> check_names(Reading& reading, const toml::table& table, const SourceLocation& place,
                                           std::string_view label, std::span<const KeySpec> keys,
                                           std::span<const ForeignKey> foreign);
 
