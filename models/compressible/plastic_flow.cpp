@@ -13,7 +13,7 @@ constexpr double k_neutral = 1e-12;
 
 /// Derivative of the plastic strains by the multiplier.
 PlasticStrains flow_direction(const Phase& phase, const Yield& yield) noexcept {
-  return {is_compressible(phase.parameters.model) ? -yield.g_p : std::abs(yield.g_s), yield.g_s};
+  return {is_compressible(phase.parameters.model) ? -yield.Psi_p : std::abs(yield.Psi_s), yield.Psi_s};
 }
 
 }  // namespace

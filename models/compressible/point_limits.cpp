@@ -28,7 +28,7 @@ double margin_of_uniqueness(const Phase& phase, const Response& now, const Plast
     return std::min(share, flow.stiffness / (flow.loading * length) - 1.0 / k_fastest);
   }
   const double bulk = is_compressible(phase.parameters.model) ? now.at.bulk_modulus.value : 0.0;
-  const double elastic_stiffness = bulk * y.f_p * y.g_p + 3.0 * now.at.shear_modulus.value * y.f_s * y.g_s;
+  const double elastic_stiffness = bulk * y.f_p * y.Psi_p + 3.0 * now.at.shear_modulus.value * y.f_s * y.Psi_s;
   return flow.stiffness / elastic_stiffness - k_least_stiffness;
 }
 

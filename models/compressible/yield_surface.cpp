@@ -18,7 +18,7 @@ Evolving product(const Evolving& a, const Evolving& b) {
 /// Half-axis of the cap's ellipse along p (Table 3, corrected).
 Evolving half_axis(const Properties& at) { return product(at.axis_ratio, at.shear_strength); }
 
-/// Table 2, von Mises and von Mises double cap: f = g.
+/// Table 2, von Mises and von Mises double cap: f = Psi.
 Yield yield_of_von_mises(const Properties& at, Segment segment, double p, double s) {
   const Evolving& strength = at.shear_strength;
   const double c = s / strength.value;
@@ -32,13 +32,13 @@ Yield yield_of_von_mises(const Properties& at, Segment segment, double p, double
     yield.f_p = 2.0 * b / axis.value;
     yield.f_phi += 2.0 * b * (centre.slope - b * axis.slope) / axis.value;
   }
-  yield.g = yield.f;
-  yield.g_p = yield.f_p;
-  yield.g_s = yield.f_s;
+  yield.Psi = yield.f;
+  yield.Psi_p = yield.f_p;
+  yield.Psi_s = yield.f_s;
   return yield;
 }
 
-/// Table 2, cap of dpc: f = g.
+/// Table 2, cap of dpc: f = Psi.
 Yield yield_of_cap(const Properties& at, const CapConstants& cap, double p, double s) {
   const Evolving axis = half_axis(at);
   const Evolving stretch = product(cap.flow_stretch, at.axis_ratio);
@@ -72,9 +72,9 @@ Yield yield_of_shear(const Properties& at, const CapConstants& cap, Branch branc
   const double along = cap.friction_slope.value * y;
   const double across = cap.flow_stretch.value * s;
   const double root = std::sqrt(along * along + across * across);
-  yield.g = root - at.shear_strength.value;
-  yield.g_p = cap.friction_slope.value * along / root;
-  yield.g_s = cap.flow_stretch.value * across / root;
+  yield.Psi = root - at.shear_strength.value;
+  yield.Psi_p = cap.friction_slope.value * along / root;
+  yield.Psi_s = cap.flow_stretch.value * across / root;
   return yield;
 }
 

@@ -24,16 +24,16 @@ struct Branch {
   friend bool operator==(const Branch&, const Branch&) = default;
 };
 
-/// Yield function f and flow potential g of one branch, with their partial derivatives. f is without dimension for vm
+/// Yield function f and flow potential Psi of one branch, with their partial derivatives. f is without dimension for vm
 /// and vmdc, and in units of the yield pressure for dpc.
 struct Yield {
   double f = 0.0;
   double f_p = 0.0;
   double f_s = 0.0;
   double f_phi = 0.0;  ///< at constant p and s
-  double g = 0.0;
-  double g_p = 0.0;
-  double g_s = 0.0;
+  double Psi = 0.0;
+  double Psi_p = 0.0;
+  double Psi_s = 0.0;
 };
 
 /// Relations between the constants of the Drucker-Prager cap (Table 2, below the table; Table 3).

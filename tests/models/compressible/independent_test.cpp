@@ -139,7 +139,7 @@ class Marcher {
   }
 
   struct Slopes {
-    Real f_p, f_s, f_phi, g_p, g_s, p, s, N, D;
+    Real f_p, f_s, f_phi, Psi_p, Psi_s, p, s, N, D;
   };
   [[nodiscard]] Slopes slopes(const State& y, Real x) const {
     const auto [p, s] = stress_at(y, x);
@@ -161,16 +161,17 @@ class Marcher {
     const Real deviatoric = (to_[0] - from_[0] - (to_[1] - from_[1])) * 2 / 3;
     now.N = now.f_p * at.K * volumetric + 3 * at.G * now.f_s * deviatoric;
     const Real coupling = now.f_phi + now.f_p * p * K1 / at.K + now.f_s * s * G1 / at.G;
-    now.D = m_.model == YieldModel::vm ? 3 * at.G * now.f_s * now.g_s - std::abs(now.g_s) * coupling
-                                       : at.K * now.f_p * now.g_p + 3 * at.G * now.f_s * now.g_s + now.g_p * coupling;
+    now.D = m_.model == YieldModel::vm
+                ? 3 * at.G * now.f_s * now.Psi_s - std::abs(now.Psi_s) * coupling
+                : at.K * now.f_p * now.Psi_p + 3 * at.G * now.f_s * now.Psi_s + now.Psi_p * coupling;
     return now;
   }
 
   void flow(const State& y, State& dy, Real x) const {
     const Slopes now = slopes(y, x);
     const Real multiplier = now.N / now.D;
-    dy[0] = multiplier * (m_.model == YieldModel::vm ? std::abs(now.g_s) : -now.g_p);
-    dy[1] = multiplier * now.g_s;
+    dy[0] = multiplier * (m_.model == YieldModel::vm ? std::abs(now.Psi_s) : -now.Psi_p);
+    dy[1] = multiplier * now.Psi_s;
   }
 
   [[nodiscard]] Real loading() const { return slopes(y_, 0).N; }
@@ -362,8 +363,8 @@ TEST(ClosedForm, FirstYieldOfTheBaseCase) {
 }
 
 /// g^p of compression at constant lateral stress c. The stress is a function of the position b = (p + pi3)/A on the
-/// cap, and g^p is the integral of g_s/g_p over phi, taken over ln(-b), in which it has no singularity at the critical
-/// state.
+/// cap, and g^p is the integral of Psi_s/Psi_p over phi, taken over ln(-b), in which it has no singularity at the
+/// critical state.
 double plastic_deviator_to(const Parameters& m, double c, double b_start, double b_end, double first_guess) {
   const auto phi_at = [&](double b) {
     double phi = first_guess;
@@ -391,7 +392,7 @@ double plastic_deviator_to(const Parameters& m, double c, double b_start, double
     const double strength = at.shear_strength.value;
     const double axis = at.axis_ratio.value * strength;
     const double s = -strength * std::sqrt(1.0 - b * b);
-    // g_s/g_p = (2 s/Gamma^2)/(2 b/A), and d(phi) = -g_p dl.
+    // Psi_s/Psi_p = (2 s/Gamma^2)/(2 b/A), and d(phi) = -Psi_p dl.
     return -(s / (strength * strength)) * (axis / b) * slope;
   };
   return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(integrand, std::log(-b_start), std::log(-b_end),

@@ -76,16 +76,17 @@ Findings findings_of(const Parameters& m, const TestRun& result) {
     found.consistency = std::max(found.consistency, std::abs(f[i]));
     const Properties at = properties_at(m, phi[i]);
     const Yield yield = yield_on(m, at, branch_at(m, at, p[i], s[i]), p[i], s[i]);
-    const double volumetric = is_compressible(m.model) ? yield.g_p : 0.0;
-    const double state = is_compressible(m.model) ? -yield.g_p : std::abs(yield.g_s);
-    const double scale = at.shear_strength.value * std::hypot(yield.g_p, yield.g_s);
+    const double volumetric = is_compressible(m.model) ? yield.Psi_p : 0.0;
+    const double state = is_compressible(m.model) ? -yield.Psi_p : std::abs(yield.Psi_s);
+    const double scale = at.shear_strength.value * std::hypot(yield.Psi_p, yield.Psi_s);
     if (i > 0 && table.at(i, regime) == table.at(i - 1, regime)) {
-      const double along = ((phi[i] - phi[i - 1]) * state + (deviatoric[i] - deviatoric[i - 1]) * yield.g_s) /
-                           std::hypot(yield.g_p, yield.g_s);
+      const double along = ((phi[i] - phi[i - 1]) * state + (deviatoric[i] - deviatoric[i - 1]) * yield.Psi_s) /
+                           std::hypot(yield.Psi_p, yield.Psi_s);
       found.backflow = std::min(found.backflow, along);
     }
-    found.plastic_work = std::min(found.plastic_work, (p[i] * volumetric + s[i] * yield.g_s) / scale);
-    found.dissipation = std::min(found.dissipation, dissipation(at, p[i], s[i], volumetric, yield.g_s, state) / scale);
+    found.plastic_work = std::min(found.plastic_work, (p[i] * volumetric + s[i] * yield.Psi_s) / scale);
+    found.dissipation =
+        std::min(found.dissipation, dissipation(at, p[i], s[i], volumetric, yield.Psi_s, state) / scale);
   }
   return found;
 }
@@ -364,7 +365,7 @@ TEST(MaterialPoint, LosesUniquenessWhereFlowWorksAgainstTheProgram) {
   EXPECT_EQ(result.events(), (std::vector<std::string>{"yield", "loss-of-uniqueness"}));
   const Properties at = properties_at(lactose(0.03), 0.0);
   const Yield yield = yield_on(lactose(0.03), at, {Segment::shear, -1.0}, result.last("p"), result.last("s"));
-  EXPECT_GT(yield.g_p / 3.0 + yield.g_s, 0.0) << "axial plastic strain per multiplier";
+  EXPECT_GT(yield.Psi_p / 3.0 + yield.Psi_s, 0.0) << "axial plastic strain per multiplier";
 }
 
 TEST(MaterialPoint, PerfectPlasticityDoesNotBearMoreStress) {

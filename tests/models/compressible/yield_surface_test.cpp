@@ -83,8 +83,8 @@ TEST(YieldSurface, DerivativesAreDifferenceQuotients) {
             near(here.f_p, quotient(step, 0, 0, &Yield::f), "f_p");
             near(here.f_s, quotient(0, step, 0, &Yield::f), "f_s");
             near(here.f_phi, quotient(0, 0, step, &Yield::f), "f_phi");
-            near(here.g_p, quotient(step, 0, 0, &Yield::g), "g_p");
-            near(here.g_s, quotient(0, step, 0, &Yield::g), "g_s");
+            near(here.Psi_p, quotient(step, 0, 0, &Yield::Psi), "Psi_p");
+            near(here.Psi_s, quotient(0, step, 0, &Yield::Psi), "Psi_s");
           }
         }
       }
@@ -152,7 +152,7 @@ TEST(YieldSurface, SegmentsMeetWithOneValueAndTangent) {
           EXPECT_GT(std::abs(direction(after.f_p, after.f_s) - direction(before.f_p, before.f_s)), 0.1);
         }
         // The plastic strain keeps its direction even over the corner, where it is purely deviatoric.
-        EXPECT_NEAR(direction(after.g_p, after.g_s), direction(before.g_p, before.g_s), 1e-12);
+        EXPECT_NEAR(direction(after.Psi_p, after.Psi_s), direction(before.Psi_p, before.Psi_s), 1e-12);
       }
     }
   }
@@ -169,7 +169,7 @@ TEST(YieldSurface, GradientsJumpWhereTheSourceSays) {
     const Yield before = yield_on(m, at, {a, 1.0}, p, q);
     const Yield after = yield_on(m, at, {b, 1.0}, p, q);
     return std::pair(std::hypot(before.f_p, before.f_s) / std::hypot(after.f_p, after.f_s),
-                     std::hypot(before.g_p, before.g_s) / std::hypot(after.g_p, after.g_s));
+                     std::hypot(before.Psi_p, before.Psi_s) / std::hypot(after.Psi_p, after.Psi_s));
   };
   const auto [f_at_arc, g_at_arc] = ratio(Segment::shear, Segment::transition);
   EXPECT_NEAR(f_at_arc, std::hypot(1.0, cap.friction_slope.value), 1e-12);
@@ -186,13 +186,13 @@ TEST(YieldSurface, FlowIsAssociatedWhereTheSourceSays) {
       const double p = pressure_in(m, at, segment, 0.4);
       const Yield yield = yield_on(m, at, {segment, -1.0}, p, -strength_at(m, at, segment, p));
       const bool is_associated = m.model != YieldModel::dpc || segment == Segment::cap;
-      const double sine = yield.f_p * yield.g_s - yield.f_s * yield.g_p;
+      const double sine = yield.f_p * yield.Psi_s - yield.f_s * yield.Psi_p;
       if (is_associated) {
         EXPECT_NEAR(sine, 0.0, 1e-14);
-        EXPECT_EQ(yield.f, yield.g);
+        EXPECT_EQ(yield.f, yield.Psi);
       } else {
         EXPECT_GT(std::abs(sine), 1e-3);
-        EXPECT_GT(yield.g_p, 0.0) << "shear and transition dilate";
+        EXPECT_GT(yield.Psi_p, 0.0) << "shear and transition dilate";
       }
     }
   }
