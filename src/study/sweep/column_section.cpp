@@ -12,10 +12,12 @@
 namespace monograin::sweep {
 namespace {
 
-constexpr std::size_t k_place = 4;  ///< length of "end." and "max."
+constexpr std::size_t k_place = 4;  ///< length of "end.", "max." and "min."
 
 /// True for a column of the results that is a value of a history.
-bool is_of_history(std::string_view name) { return name.starts_with("end.") || name.starts_with("max."); }
+bool is_of_history(std::string_view name) {
+  return name.starts_with("end.") || name.starts_with("max.") || name.starts_with("min.");
+}
 
 }  // namespace
 
@@ -27,8 +29,8 @@ std::vector<PlacedColumn> columns_of_results(Reading& reading, const Section& ro
     if (is_of_history(texts[i])) {
       columns.push_back({texts[i].substr(k_place), where, texts[i].starts_with("end.")});
     } else {
-      reading.faults.add(where, fmt::format("'{}': expected end.COLUMN, the value at the end of a run, or max.COLUMN, "
-                                            "its largest, for example max.axial.force",
+      reading.faults.add(where, fmt::format("'{}': expected end.COLUMN, the value at the end of a run, max.COLUMN or "
+                                            "min.COLUMN, its extremes, for example max.axial.force",
                                             shown(texts[i])));
     }
   }
@@ -55,13 +57,20 @@ std::vector<PlacedColumn> columns_of_formulas(Reading& reading, const Section& r
           needed.push_back({std::string(name.substr(k_place)), where});
         } else if (std::ranges::find(keys, name) == keys.end()) {
           reading.faults.add(where, fmt::format("\"{}\": '{}' is no column of the results; expected end.COLUMN, the "
-                                                "value at the end of a run, max.COLUMN, its largest, or a varied key",
+                                                "value at the end of a run, max.COLUMN or min.COLUMN, its extremes, or "
+                                                "a varied key",
                                                 shown(texts[i]), shown(name)));
           continue;
         }
-        if (columns.empty() || std::ranges::find(columns, name) != columns.end()) continue;
-        reading.faults.add(where, fmt::format("\"{}\": '{}' is not in columns, which leaves out all others",
-                                              shown(texts[i]), shown(name)));
+        if (std::ranges::find(columns, name) != columns.end()) continue;
+        if (!columns.empty()) {
+          reading.faults.add(where, fmt::format("\"{}\": '{}' is not in columns, which leaves out all others",
+                                                shown(texts[i]), shown(name)));
+        } else if (name.starts_with("min.")) {
+          reading.faults.add(where, fmt::format("\"{0}\": '{1}' is a result only if columns lists it; expected for "
+                                                "example columns = [\"{1}\"]",
+                                                shown(texts[i]), shown(name)));
+        }
       }
     } catch (const ExpressionError& error) {
       add_formula_fault(reading.faults, where, texts[i], error);

@@ -19,7 +19,7 @@ struct PlacedColumn {
 };
 
 /// The columns of the histories that `columns`, a list of columns of the results, needs. A fault for each entry that
-/// does not begin with "end." or "max.".
+/// does not begin with "end.", "max." or "min.".
 [[nodiscard]] std::vector<PlacedColumn> columns_of_results(Reading& reading, const Section& root);
 
 /// Reports what is wrong with a formula that stands in quotes at `where`.

@@ -60,27 +60,28 @@ struct Outcome {
   return text;
 }
 
-/// True for columns that count rows, whose final and largest values say nothing about a run.
+/// True for columns that count rows, whose final and extreme values say nothing about a run.
 [[nodiscard]] bool is_counter(const Column& column) { return column.name == "step" || column.name == "row"; }
 
-/// Largest value of a column, without undefined values.
-[[nodiscard]] double largest(const Table& history, std::size_t column) {
+/// Extreme value of a column, without undefined values. @param extreme  std::fmax or std::fmin
+[[nodiscard]] double extreme_of(const Table& history, std::size_t column, double (*extreme)(double, double)) {
   double result = k_nan;
-  for (std::size_t row = 0; row < history.row_count(); ++row) result = std::fmax(result, history.at(row, column));
+  for (std::size_t row = 0; row < history.row_count(); ++row) result = extreme(result, history.at(row, column));
   return result;
 }
 
-/// Which values of a history become cells of results.csv, and their headings: final values, then largest ones.
+/// Which values of a history become cells of results.csv, and their headings: final values, then extreme ones.
 struct Layout {
-  std::vector<Column> columns;       ///< of the history
-  std::vector<std::size_t> finals;   ///< columns whose final value is a cell
-  std::vector<std::size_t> largest;  ///< columns whose largest value is one
+  std::vector<Column> columns;        ///< of the history
+  std::vector<std::size_t> finals;    ///< columns whose final value is a cell
+  std::vector<std::size_t> largest;   ///< columns whose largest value is one
+  std::vector<std::size_t> smallest;  ///< columns whose smallest value is one
   std::string headings;
 };
 
-/// @param wanted  results such as max.axial.force; empty: all
+/// @param wanted  results such as max.axial.force; empty: all final and largest values
 [[nodiscard]] Layout layout_of(const std::vector<Column>& columns, const std::vector<std::string>& wanted) {
-  Layout layout{.columns = columns, .finals = {}, .largest = {}, .headings = {}};
+  Layout layout{.columns = columns, .finals = {}, .largest = {}, .smallest = {}, .headings = {}};
   std::vector<std::string> headings;
   const auto add = [&](std::string_view prefix, std::vector<std::size_t>& places, bool takes_words) {
     for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -93,11 +94,12 @@ struct Layout {
   };
   add("end", layout.finals, true);
   add("max", layout.largest, false);
+  if (!wanted.empty()) add("min", layout.smallest, false);
   layout.headings = fmt::format("{}", fmt::join(headings, ","));
   return layout;
 }
 
-/// Collects the final and largest values of a history's columns.
+/// Collects the final and extreme values of a history's columns.
 /// @param wanted  as for layout_of()
 /// @param layout  cache: that of the last history, whose columns are mostly the same
 void summarise(const Table& history, const std::vector<std::string>& wanted, Layout& layout, Outcome& outcome) {
@@ -117,17 +119,21 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
       append_csv_number(cells, history.at(last, k));
     }
   }
-  for (const std::size_t k : layout.largest) {
-    begin_cell();
-    append_csv_number(cells, largest(history, k));
-  }
+  const auto add_extremes = [&](const std::vector<std::size_t>& places, double (*extreme)(double, double)) {
+    for (const std::size_t k : places) {
+      begin_cell();
+      append_csv_number(cells, extreme_of(history, k, extreme));
+    }
+  };
+  add_extremes(layout.largest, std::fmax);
+  add_extremes(layout.smallest, std::fmin);
 }
 
 /// Parts of a history that the wanted results do not depend on.
 [[nodiscard]] LeftOut not_needed_by(const std::vector<std::string>& wanted) {
   if (wanted.empty()) return {};
   return {.energies = std::ranges::none_of(wanted, [](std::string_view name) { return is_energy(name.substr(4)); }),
-          .rows = std::ranges::none_of(wanted, [](std::string_view name) { return name.starts_with("max."); })};
+          .rows = std::ranges::all_of(wanted, [](std::string_view name) { return name.starts_with("end."); })};
 }
 
 [[nodiscard]] std::string messages_of(const ScenarioError& error) {

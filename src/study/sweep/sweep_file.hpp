@@ -31,7 +31,7 @@ struct Sweep {
   ScenarioTemplate scenario;
   std::string scenario_name;
   bool keeps_histories = false;
-  std::vector<std::string> columns;  ///< of the results, e.g. max.axial.force; empty: all there are
+  std::vector<std::string> columns;  ///< of the results, e.g. max.axial.force; empty: all final and largest values
   std::vector<std::string> results;  ///< formulas for which indices are estimated
   std::optional<BandRequest> bands{};
   std::string digest;  ///< of everything that determines the results: sweep, scenario, tables, program version

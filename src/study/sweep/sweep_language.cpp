@@ -62,7 +62,7 @@ std::vector<KeySpec> root_keys(bool contains_scenario) {
        .example = "[bands]"},
       {.name = "histories", .meaning = "keep the history of every run", .kind = Kind::toggle, .default_value = false},
       {.name = "columns",
-       .meaning = "columns of the results; what they do not need is not computed [all]",
+       .meaning = "columns of the results; what they do not need is not computed [all end. and max.]",
        .kind = Kind::texts,
        .example = "[\"end.apparent_radius\", \"max.axial.force\"]"},
       {.name = "vary",

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "history/run.hpp"
@@ -430,12 +431,42 @@ TEST_F(SweepFiles, ColumnsThatAreAskedForAreThoseOfAllColumns) {
   }
 }
 
+// An elastic adhesive sphere is pulled off a wall by 3/2 pi R dg (Johnson, Kendall and Roberts 1971).
+TEST_F(SweepFiles, SmallestValuesAreThoseOfTheHistories) {
+  write("adhesive.toml", R"toml(model = "mdr"
+particle.radius = "10 um"
+material = { youngs_modulus = "1 GPa", poisson_ratio = 0.3, yield_stress = "10 GPa", surface_energy = "0.1 J/m^2" }
+[loading]
+configuration = "simple"
+steps = [{ displacement = "0.05 R0", duration = "1 s" }, { rate = "1 um/s", detach = true }]
+[output]
+points = 20
+)toml");
+  static_cast<void>(results(read(R"toml(scenario = "adhesive.toml"
+columns = ["min.axial.force", "max.axial.force"]
+histories = true
+[vary]
+"material.surface_energy" = { values = [0.1, 0.2, 0.4] }
+)toml"),
+                            "out"));
+  const Table table = read_csv(path("out") / "results.csv");
+  ASSERT_EQ(table.row_count(), 3U);
+  for (std::size_t row = 0; row < 3; ++row) {
+    const std::vector<double> force =
+        read_csv(path("out") / "histories" / fmt::format("{}.csv", row + 1)).column("axial.force");
+    const double smallest = table.column("min.axial.force")[row];
+    EXPECT_EQ(smallest, *std::ranges::min_element(force));
+    const double pull_off = -1.5 * std::numbers::pi * 10e-6 * table.column("material.surface_energy")[row];
+    EXPECT_NEAR(smallest, pull_off, 0.02 * std::abs(pull_off));
+  }
+}
+
 TEST_F(SweepFiles, FaultsOfColumnsAreAtTheirPlaces) {
   const std::string head = "scenario = \"small.toml\"\n";
   const std::string vary = "[vary]\n\"material.poisson_ratio\" = { from = 0.2, to = 0.3 }\n";
   EXPECT_EQ(faults_of(head + "columns = [\"axial.force\"]\n" + vary),
             (std::vector<std::string>{"sweep.toml:2:12: 'axial.force': expected end.COLUMN, the value at the end of a "
-                                      "run, or max.COLUMN, its largest, for example max.axial.force"}));
+                                      "run, max.COLUMN or min.COLUMN, its extremes, for example max.axial.force"}));
   const auto unknown = faults_of(head + "columns = [\"end.time\", \"max.axial.forse\", \"max.axial.regime\"]\n" + vary);
   ASSERT_EQ(unknown.size(), 2U);
   EXPECT_TRUE(unknown[0].starts_with("sweep.toml:2:24: 'axial.forse' is no column of the histories")) << unknown[0];
@@ -450,6 +481,9 @@ TEST_F(SweepFiles, FaultsOfColumnsAreAtTheirPlaces) {
   ASSERT_EQ(formula.size(), 1U);
   EXPECT_TRUE(formula[0].starts_with("sweep.toml:4:12: 'wrok' is no column of the histories")) << formula[0];
   EXPECT_TRUE(formula[0].ends_with("did you mean 'work'?")) << formula[0];
+  EXPECT_EQ(faults_of(head + "design = \"saltelli\"\nsamples = 4\nresults = [\"min.axial.force\"]\n" + vary),
+            (std::vector<std::string>{"sweep.toml:4:12: \"min.axial.force\": 'min.axial.force' is a result only if "
+                                      "columns lists it; expected for example columns = [\"min.axial.force\"]"}));
   EXPECT_EQ(faults_of(head +
                       "design = \"saltelli\"\nsamples = 4\ncolumns = [\"end.work\"]\n"
                       "results = [\"end.work + max.axial.force\"]\n" +
