@@ -4,6 +4,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bindings.hpp"
 #include "compressible/contact_law.hpp"
@@ -19,6 +21,7 @@
 #include "elastic/line_contact.hpp"
 #include "elastic/nonlocal_law.hpp"
 #include "mdr/adhesion.hpp"
+#include "mdr/relaxed_profile.hpp"
 #include "mdr/transforms.hpp"
 #include "packing/law.hpp"
 #include "plastic/law.hpp"
@@ -231,14 +234,17 @@ py::object mdr_plastic(const std::string& quantity, const Numbers& youngs_modulu
   })(youngs_modulus, poisson_ratio, yield_stress, radius, overlap);
 }
 
+Control control_named(const std::string& given) {
+  return word<Control>(given, {{"force", Control::force}, {"displacement", Control::displacement}});
+}
+
 /// Force at pull-off, or the contact radius at pull-off.
 /// @param quantity  force; any other text: contact radius
 /// @param control   controlled quantity at pull-off: force or displacement
 py::object mdr_pull_off(const std::string& quantity, const std::string& profile, const std::string& control,
                         const Numbers& composite_modulus, const Numbers& radius, const Numbers& surface_energy) {
   const mdr::ElasticProfile shape = profile_named(profile);
-  const Control prescribed =
-      word<Control>(control, {{"force", Control::force}, {"displacement", Control::displacement}});
+  const Control prescribed = control_named(control);
   return py::vectorize([&](double modulus, double r, double energy) {
     require_positive({{"modulus", modulus}, {"radius", r}, {"surface_energy", energy}});
     return or_nan([&] {
@@ -247,6 +253,22 @@ py::object mdr_pull_off(const std::string& quantity, const std::string& profile,
       return quantity == "force" ? mdr::peel_state(indenter, modulus, energy, a).force : a;
     });
   })(composite_modulus, radius, surface_energy);
+}
+
+/// Stable states of an adhesive contact with a sampled profile, down to pull-off.
+/// @return contact radii, displacements and forces
+py::tuple mdr_peel_curve(const std::vector<double>& radii, const std::vector<double>& heights, double composite_modulus,
+                         double surface_energy, const std::string& control, std::size_t count) {
+  require_positive({{"modulus", composite_modulus}, {"surface_energy", surface_energy}});
+  const std::vector<mdr::PeelState> states = mdr::peel_curve(mdr::RelaxedProfile(radii, heights), composite_modulus,
+                                                             surface_energy, control_named(control), count);
+  const auto column = [&](double mdr::PeelState::*value) {
+    Numbers numbers(static_cast<py::ssize_t>(states.size()));
+    std::ranges::transform(states, numbers.mutable_data(), value);
+    return numbers;
+  };
+  return py::make_tuple(column(&mdr::PeelState::contact_radius), column(&mdr::PeelState::displacement_1d),
+                        column(&mdr::PeelState::force));
 }
 
 // --- compressible particle and packing
@@ -315,6 +337,7 @@ void add_mdr(py::module_& laws) {
   laws.def("mdr_elastic", &mdr_elastic);
   laws.def("mdr_plastic", &mdr_plastic);
   laws.def("mdr_pull_off", &mdr_pull_off);
+  laws.def("mdr_peel_curve", &mdr_peel_curve);
   laws.def("mdr_yield_overlap", elementwise(+[](double e, double nu, double y, double r) {
              require_positive({{"youngs_modulus", e}, {"yield_stress", y}, {"radius", r}});
              require_poisson_ratio(nu);

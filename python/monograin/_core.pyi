@@ -152,6 +152,16 @@ class laws:
     @staticmethod
     def mdr_elastic(quantity: str, profile: str, modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, /) -> Any: ...
     @staticmethod
+    def mdr_peel_curve(
+        radii: ArrayLike,
+        heights: ArrayLike,
+        modulus: float,
+        surface_energy: float,
+        control: str,
+        points: int,
+        /,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+    @staticmethod
     def mdr_plastic(
         quantity: str,
         youngs_modulus: ArrayLike,

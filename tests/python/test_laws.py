@@ -123,6 +123,42 @@ def test_a_parabola_pulls_off_as_johnson_kendall_and_roberts_say():
     assert (laws.mdr.pull_off_radius(1e9, 0.01, energy) > 0.0).all()
 
 
+def test_a_concave_profile_peels_as_its_closed_form_says():
+    # g3D = c2 r^2 + c4 r^4 has the image 2 c2 x^2 + (8/3) c4 x^4.
+    c2, c4, modulus, energy = -0.05, 0.4, 1.0, 1e-4
+    radii = np.linspace(0.0, 0.9, 200)
+    curve = laws.mdr.peel_curve(radii, c2 * radii**2 + c4 * radii**4, modulus, energy, control="force", points=50)
+    a = curve.contact_radius
+    stretch = np.sqrt(2.0 * math.pi * a * energy / modulus)
+    image = 2.0 * c2 * a**2 + 8.0 / 3.0 * c4 * a**4
+    free = 8.0 / 3.0 * modulus * c2 * a**3 + 64.0 / 15.0 * modulus * c4 * a**5
+    assert_allclose(curve.displacement, image - stretch, rtol=1e-8, atol=1e-10)
+    assert_allclose(curve.force, free - 2.0 * modulus * a * stretch, rtol=1e-8, atol=1e-10)
+    assert a[0] == 0.9 and curve.force.argmin() == 49
+    assert a[-1] == pytest.approx(0.31211213267490756, rel=1e-8)
+    assert curve.force[-1] == pytest.approx(-0.0077406004808598792, rel=1e-8)
+
+
+def test_a_sphere_given_by_samples_pulls_off_as_the_parabola():
+    radius, energy = 0.01, 0.1
+    modulus = 1e9
+    radii = np.linspace(0.0, 1e-3, 101)
+    curve = laws.mdr.peel_curve(radii, radii**2 / (2.0 * radius), modulus, energy, control="force")
+    assert curve.force[-1] == pytest.approx(-1.5 * math.pi * energy * radius, rel=1e-10)
+
+
+def test_a_profile_that_is_none_is_refused():
+    good = np.linspace(0.0, 1.0, 10)
+    with pytest.raises(ValueError):
+        laws.mdr.peel_curve(good[:4], good[:4] ** 2, 1.0, 1e-4)
+    with pytest.raises(ValueError):
+        laws.mdr.peel_curve(good[::-1], good**2, 1.0, 1e-4)
+    with pytest.raises(ValueError, match="modulus = 0"):
+        laws.mdr.peel_curve(good, good**2, 0.0, 1e-4)
+    with pytest.raises(ValueError, match="'weight' is not known"):
+        laws.mdr.peel_curve(good, good**2, 1.0, 1e-4, control="weight")
+
+
 def test_the_images_of_powers_are_known():
     assert laws.mdr.power_ratio(0.0) == pytest.approx(1.0, rel=ROUNDING)
     assert laws.mdr.power_ratio(1.0) == pytest.approx(math.pi / 2.0, rel=ROUNDING)

@@ -7,16 +7,19 @@ Source: Zunker and Kamrin, Part I, doi:10.1016/j.jmps.2023.105492.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 
 __all__ = [
+    "PeelCurve",
     "elastic_contact_radius",
     "elastic_energy",
     "elastic_force",
+    "peel_curve",
     "plastic_contact_radius",
     "plastic_force",
     "plastic_mean_pressure",
@@ -156,6 +159,48 @@ def pull_off_radius(
         modulus, radius, surface_energy, control, profile: as in :func:`pull_off_force`.
     """
     return _core.laws.mdr_pull_off("contact_radius", profile, control, modulus, radius, surface_energy)
+
+
+class PeelCurve(NamedTuple):
+    """Stable states of an adhesive contact whose edge recedes, from the largest contact radius down to pull-off."""
+
+    contact_radius: NDArray[np.float64]
+    """a [m], shape (points,)."""
+    displacement: NDArray[np.float64]
+    """Displacement of the wall [m] from the position in which it touches the relaxed surface on the axis."""
+    force: NDArray[np.float64]
+    """Force [N], negative in tension."""
+
+
+def peel_curve(
+    radii: ArrayLike,
+    heights: ArrayLike,
+    modulus: float,
+    surface_energy: float,
+    *,
+    control: str = "displacement",
+    points: int = 101,
+) -> PeelCurve:
+    """Returns how an adhesive contact with a measured or computed relaxed profile is pulled off (appendix F.2).
+
+    The profile is the surface without load, for example of a flattened particle from finite elements or a profilometer;
+    it need not be convex. The compression before must have closed the whole disc up to the last radius. Images, forces and
+    the end of stability follow from eqs. 4, 11, 14 and 15; between samples the profile is a cubic in the square of the radius.
+
+    Args:
+        radii: distances from the axis [m], shape (n,), from 0 on, ascending, at least five. The last one is the largest
+            contact radius.
+        heights: gap of the relaxed surface from a flat wall that touches it on the axis [m], shape (n,); only differences count.
+        modulus: composite modulus E* = E/(1 - nu^2) [Pa], above 0.
+        surface_energy: effective surface energy of particle and wall [J/m^2], above 0.
+        control: controlled quantity, ``"displacement"`` or ``"force"``. Under force control the last force is that of pull-off.
+        points: number of states, 2 or more.
+
+    Raises:
+        ValueError: for samples or numbers that are not admissible, and if the edge is unstable at the largest radius: the
+            profile must then be known further out.
+    """
+    return PeelCurve(*_core.laws.mdr_peel_curve(radii, heights, modulus, surface_energy, control, points))
 
 
 def power_ratio(exponent: ArrayLike) -> Any:
