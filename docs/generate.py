@@ -47,6 +47,7 @@ DIMENSIONS = {
     "m": "length",
     "Pa": "stress",
     "J/m^2": "surface energy",
+    "N/m": "stiffness",
     "N": "force",
     "s": "time",
     "m/s": "velocity",

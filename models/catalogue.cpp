@@ -63,6 +63,27 @@ MONOGRAIN_MODELS(MONOGRAIN_DECLARE)
 
 namespace {
 
+/// True for a name of letters, digits and a mark, which begins with a letter. Capitals are for keys, whose mark is '_'.
+bool is_name(std::string_view text, char mark) {
+  const auto is_letter = [mark](char c) { return (c >= 'a' && c <= 'z') || (mark == '_' && c >= 'A' && c <= 'Z'); };
+  const auto may_follow = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == mark; };
+  return !text.empty() && is_letter(text.front()) && std::ranges::all_of(text, may_follow);
+}
+
+/// What is wrong with the names in one list of a model.
+template <class Items>
+std::string fault_of_names(const Model& model, const Items& items, const std::string& what, char mark) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const std::string_view name = items[i].name;
+    const std::string of_model = "model '" + std::string(model.name) + "' has the " + what + " '" + std::string(name);
+    if (!is_name(name, mark)) return of_model + "'; expected letters, digits and '" + mark + "'";
+    for (std::size_t k = 0; k < i; ++k) {
+      if (items[k].name == name) return of_model + "' twice";
+    }
+  }
+  return {};
+}
+
 std::vector<Model>& all_models() {
 #define MONOGRAIN_CALL(folder, function) folder::function(),
   static std::vector<Model> models{MONOGRAIN_MODELS(MONOGRAIN_CALL)};
@@ -73,7 +94,24 @@ std::vector<Model>& all_models() {
 
 std::span<const Model> model_catalogue() noexcept { return all_models(); }
 
+std::string fault_of(const Model& model) {
+  constexpr std::array<std::string_view, 8> k_tables{"title",   "model",  "particle", "material",
+                                                     "loading", "output", "numerics", "sensitivities"};
+  if (!is_name(model.name, '-')) {
+    return "a model is named '" + std::string(model.name) + "'; expected small letters, digits and hyphens";
+  }
+  if (std::ranges::find(k_tables, model.name) != k_tables.end()) {
+    return "a model is named '" + std::string(model.name) + "', as a part of every scenario; expected another name";
+  }
+  if (model.bind == nullptr) return "model '" + std::string(model.name) + "' has no function `bind`";
+  std::string fault = fault_of_names(model, model.material, "key", '_');
+  if (fault.empty()) fault = fault_of_names(model, model.options, "option", '_');
+  if (fault.empty()) fault = fault_of_names(model, model.regimes, "regime", '-');
+  return fault.empty() ? fault_of_names(model, model.events, "event", '-') : fault;
+}
+
 void add_model(const Model& model) {
+  if (const std::string fault = fault_of(model); !fault.empty()) throw std::invalid_argument(fault);
   if (find_model(model.name) != nullptr) {
     throw std::invalid_argument("there is a model '" + std::string(model.name) + "' already; expected another name");
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "system/model.hpp"
@@ -11,8 +12,12 @@ namespace monograin {
 /// All models this version can run, in the order in which they are listed to users.
 [[nodiscard]] std::span<const Model> model_catalogue() noexcept;
 
+/// What is wrong with the names of a model, its keys, regimes and events, or with a function that it must have; empty
+/// if nothing is. Names go into scenario files, columns and folders.
+[[nodiscard]] std::string fault_of(const Model& model);
+
 /// Adds a model behind the others. To be called before a scenario is read, from one thread.
-/// @throws std::invalid_argument where the name is taken
+/// @throws std::invalid_argument if the name is taken, or for a model with a fault
 void add_model(const Model& model);
 
 /// The entry of that name, or nullptr.

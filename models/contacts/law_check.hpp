@@ -3,26 +3,108 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "contacts/wall_contact.hpp"
 #include "system/number_text.hpp"
 
 namespace monograin::contacts {
 
-/// Looks for functions of a law that do not belong together, on the branch of a fresh contact: force, slope, inverse,
-/// work and regime. Values count as equal within a part in a thousand. Displacements at which the law has ended do not
-/// count.
+/// Compares the functions of a law with each other. Values count as equal within a part in a thousand.
+template <class Law>
+class LawCheck {
+ public:
+  using Branch = typename Law::Branch;
+  explicit LawCheck(const Law& law) : law_(law) {}
+
+  /// Checks force, slope, work and inverse of a branch.
+  /// @param is_first  a force that is not finite is a contradiction; further on, the law may have ended
+  /// @return the contradiction, a sentence; empty if there is none
+  [[nodiscard]] std::string at(const Branch& b, double d, bool is_first) const {
+    const double opening = law_.opening(b);
+    const double depth = d - opening;
+    const double h = std::max(k_step * depth, k_least_step * std::abs(d));
+    const std::string place = " at displacement " + text(d) + " R0";
+    const double force = law_.force(b, d);
+    const double growth = (law_.force(b, d + h) - law_.force(b, d - h)) / (2.0 * h);
+    if (!std::isfinite(force) || !std::isfinite(growth)) {
+      return is_first ? "force(b, d) is " + text(force) + place + "; expected a finite number" : std::string();
+    }
+    if (!(force > 0.0)) {
+      return "force(b, d) is " + text(force) + place + ", and the contact opens at " + text(opening) +
+             " R0; expected a force above 0 beyond that";
+    }
+    const double slope = law_.slope(b, d);
+    if (differ(slope, growth, std::max({std::abs(slope), std::abs(growth), force / depth}))) {
+      return "slope(b, d) is " + text(slope) + place + ", but force(b, d) grows by " + text(growth) + " there";
+    }
+    if (slope < 0.0) return "slope(b, d) is " + text(slope) + place + "; expected a force that grows";
+    if constexpr (requires { law_.work(b, d); }) {
+      const double by_work = (law_.work(b, d + h) - law_.work(b, d - h)) / (2.0 * h);
+      if (differ(by_work, force, std::max(force, growth * depth))) {
+        return "work(b, d) grows by " + text(by_work) + place + ", but force(b, d) is " + text(force) + " there";
+      }
+    }
+    if (slope == 0.0) return {};
+    if (const double inverse = law_.displacement(b, force); differ(inverse, d, depth)) {
+      return "displacement(b, F) is " + text(inverse) + " for the force" + place + "; expected that displacement";
+    }
+    return {};
+  }
+
+  /// Checks that unloading begins at the force of loading, that its functions belong together, and that loading goes on
+  /// from there after a reload.
+  [[nodiscard]] std::string where_unloading_begins_at(const Branch& loading, double d) const {
+    Law law = law_;
+    if constexpr (requires { law.refuses_unloading(); }) {
+      if (law.refuses_unloading()) return {};
+    }
+    Branch b = loading;
+    if constexpr (requires { law.turn(b, d); }) law.turn(b, d);
+    const std::string place = " where unloading begins at displacement " + text(d) + " R0";
+    const double force = law_.force(loading, d);
+    if (const double now = law.force(b, d); differ(now, force, force)) {
+      return "force(b, d) is " + text(now) + place + ", and was " + text(force) + " before";
+    }
+    const double opening = law.opening(b);
+    if (std::string found = LawCheck(law).at(b, opening + 0.9 * (d - opening), false); !found.empty()) {
+      return found + ", in unloading";
+    }
+    if constexpr (requires { law.reload(b); }) law.reload(b);
+    const double beyond = d + k_step * (d - law_.opening(loading));
+    const double expected = law_.force(loading, beyond);
+    if (const double now = law.force(b, beyond);
+        differ(now, expected, expected) ||
+        differ(law.slope(b, beyond), law_.slope(loading, beyond), law_.slope(loading, beyond))) {
+      return "after unloading begins at displacement " + text(d) + " R0 and reloading, force and slope beyond it are " +
+             text(now) + " and " + text(law.slope(b, beyond)) + "; without unloading they are " + text(expected) +
+             " and " + text(law_.slope(loading, beyond));
+    }
+    return {};
+  }
+
+ private:
+  static constexpr double k_equal = 1e-3;
+  static constexpr double k_step = 1e-5;        ///< of differences, over the displacement beyond the opening
+  static constexpr double k_least_step = 1e-6;  ///< of differences, over the displacement
+
+  [[nodiscard]] static bool differ(double a, double b, double scale) {
+    return !(std::abs(a - b) <= k_equal * std::abs(scale));
+  }
+  [[nodiscard]] static std::string text(double value) { return number_text(value, 6); }
+
+  const Law& law_;
+};
+
+/// Looks for functions of a law that do not belong together, on the branch of a fresh contact and where it unloads.
+/// Displacements at which the law has ended do not count.
 /// @param reach  largest displacement, over R0; 0 or infinite: unknown
 /// @return the first contradiction found, a sentence; empty if there is none
 template <class Law>
 [[nodiscard]] std::string contradiction_in(const Law& law, double reach) {
-  constexpr double k_equal = 1e-3;
   constexpr double k_first_reach = 0.01;
-  constexpr double k_step = 1e-5;        // of differences, over the displacement beyond the opening
-  constexpr double k_least_step = 1e-6;  // of differences, over the displacement
-  const auto differ = [](double a, double b, double scale) { return !(std::abs(a - b) <= k_equal * std::abs(scale)); };
-  const auto text = [](double value) { return number_text(value, 6); };
   const typename Law::Branch branch{};
   const auto count = static_cast<int>(Law::k_regimes.size());
   for (const bool touches : {false, true}) {
@@ -35,39 +117,20 @@ template <class Law>
   const double opening = law.opening(branch);
   double end = opening + (reach > 0.0 && std::isfinite(reach) ? reach : k_first_reach);
   if constexpr (requires { law.next(branch); }) {
-    if (const auto ahead = law.next(branch)) end = std::min(end, ahead->position);
+    if (const std::optional<Boundary> ahead = law.next(branch)) end = std::min(end, ahead->position);
   }
+  const LawCheck check(law);
   bool is_first = true;
   for (const double share : {0.2, 0.5, 0.9}) {
-    const double depth = share * (end - opening);
-    const double d = opening + depth;
-    const double h = std::max(k_step * depth, k_least_step * std::abs(d));
-    const std::string at = " at displacement " + text(d) + " R0";
+    const double d = opening + share * (end - opening);
     try {
-      const double force = law.force(branch, d);
-      const double growth = (law.force(branch, d + h) - law.force(branch, d - h)) / (2.0 * h);
-      if (!std::isfinite(force) || !std::isfinite(growth)) {
-        // Further on, the law may have ended.
-        return is_first ? "force(b, d) is " + text(force) + at + "; expected a finite number" : std::string();
-      }
-      is_first = false;
-      const double slope = law.slope(branch, d);
-      if (differ(slope, growth, std::max({std::abs(slope), std::abs(growth), std::abs(force) / depth}))) {
-        return "slope(b, d) is " + text(slope) + at + ", but force(b, d) grows by " + text(growth) + " there";
-      }
-      if constexpr (requires { law.work(branch, d); }) {
-        const double by_work = (law.work(branch, d + h) - law.work(branch, d - h)) / (2.0 * h);
-        if (differ(by_work, force, std::max(std::abs(force), std::abs(growth) * depth))) {
-          return "work(b, d) grows by " + text(by_work) + at + ", but force(b, d) is " + text(force) + " there";
-        }
-      }
-      if (!(force > 0.0) || !(slope > 0.0)) continue;
-      if (const double inverse = law.displacement(branch, force); differ(inverse, d, depth)) {
-        return "displacement(b, F) is " + text(inverse) + " for the force" + at + "; expected that displacement";
-      }
+      if (std::string found = check.at(branch, d, is_first); !found.empty()) return found;
+      if (!std::isfinite(law.force(branch, d))) return {};
+      if (std::string found = check.where_unloading_begins_at(branch, d); !found.empty()) return found;
     } catch (const std::domain_error&) {  // the law has ended
       return {};
     }
+    is_first = false;
   }
   return {};
 }

@@ -16,24 +16,29 @@
 
 namespace monograin::contacts {
 
-/// Events of contacts that pass no boundary of their law.
+/// Events of contacts; the last one is of laws that end at a boundary.
 inline constexpr std::array k_events{
     Term{"contact-made", "a wall comes to touch the particle"},
     Term{"contact-lost", "a wall leaves the particle"},
     Term{"load-reversal", "a contact at its largest displacement starts to unload"},
     Term{"reload", "a contact passes its old largest displacement"},
+    Term{"retreat", "a contact starts to unload in the middle of a step"},
     Term{"step-end", "end of a step of the program"},
     Term{"until-met", "a step ended early by its condition"},
+    Term{"limit", "end of the law's domain; the message says which"},
 };
 
-/// Fills in what follows from the law: the equations, wall sets and events where none are named, and whether contacts
-/// have areas. The equations refuse a law whose functions contradict each other, by std::runtime_error.
+/// Fills in what follows from the law: the equations, with a fixed or a free centre, wall sets and events where none
+/// are named, and whether contacts have areas. The equations refuse a law whose functions contradict each other, by
+/// std::runtime_error.
 /// @tparam law_of  function from a scenario to its law, as IndependentContacts needs it
 template <auto law_of>
 [[nodiscard]] Model model_of(Model model) {
   using Law = decltype(law_of(std::declval<const ModelInput&>()));
   if (model.configurations.empty()) model.configurations = k_wall_configurations;
-  if (model.events.empty()) model.events = k_events;
+  constexpr bool may_end = requires(const Law& law, const typename Law::Branch& b) { law.next(b); };
+  if (model.events.empty()) model.events = std::span(k_events).first(k_events.size() - (may_end ? 0 : 1));
+  model.has_free_centre = true;
   model.has_contact_area = requires(const Law& law, const typename Law::Branch& b) { law.contact(b, 1.0); };
   model.bind = [](const ModelInput& input, std::vector<ContactClass> classes,
                   const Reach& reach) -> std::unique_ptr<HybridSystem> {
@@ -44,8 +49,8 @@ template <auto law_of>
     if (const std::string found = contradiction_in(law, reach.displacement / input.radius); !found.empty()) {
       throw std::runtime_error("the functions of the law do not belong together: " + found);
     }
-    return std::make_unique<IndependentContacts<Law>>(law, Settings{input.radius, reach.displacement, reach.force},
-                                                      std::move(classes));
+    return std::make_unique<IndependentContacts<Law>>(
+        law, Settings{input.radius, reach.displacement, reach.force, input.centre_is_free}, std::move(classes));
   };
   return model;
 }

@@ -1,4 +1,4 @@
-/// An elastic particle between rigid walls with its centre fixed: Hertz's law at every contact. Lengths in R0, stresses
+/// An elastic particle between rigid walls: Hertz's law at every contact. Lengths in R0, stresses
 /// in E*. Source: Hertz (1882); Zunker and Kamrin (2024), eq. 25.
 #pragma once
 
@@ -45,7 +45,5 @@ struct WallLaw {
                             .displacement_1d = d});
   }
 };
-
-using System = contacts::IndependentContacts<WallLaw>;
 
 }  // namespace monograin::hertz

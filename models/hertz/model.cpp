@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "contacts/model_of.hpp"
 #include "elastic/hertz.hpp"
 #include "hertz/law.hpp"
 #include "stress/checks.hpp"
@@ -26,17 +27,6 @@ constexpr std::array k_regimes{
     Term{"elastic", "Hertz contact"},
 };
 
-constexpr std::array k_events{
-    Term{"contact-made", "a wall comes to touch the particle"},
-    Term{"contact-lost", "a wall leaves the particle"},
-    Term{"load-reversal", "a contact starts to unload"},
-    Term{"reload", "a contact passes its old maximum overlap"},
-    Term{"retreat", "a contact starts to unload in the middle of a step"},
-    Term{"step-end", "end of a step of the program"},
-    Term{"until-met", "a step ended early by its condition"},
-    Term{"limit", "end of the equations' domain; the message says which"},
-};
-
 constexpr std::array<string_view, 2> k_domain{
     "small contacts: contact radius well below the particle radius (no check)",
     "a wall stays at least 1e-3 R0 from the centre (stop)",
@@ -48,11 +38,7 @@ double composite_modulus(const ModelInput& input) {
   return monograin::composite_modulus(input.material("youngs_modulus"), input.material("poisson_ratio"));
 }
 
-std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach) {
-  return std::make_unique<System>(
-      WallLaw{composite_modulus(input)},
-      contacts::Settings{input.radius, reach.displacement, reach.force, input.centre_is_free}, std::move(classes));
-}
+WallLaw law_of(const ModelInput& input) { return {composite_modulus(input)}; }
 
 std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {
   const double youngs_modulus = input.material("youngs_modulus");
@@ -67,7 +53,7 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
 /// Displacement and force at which a contact meets a condition for the first time.
 Reach reach(const ModelInput& input, const Until& until) {
   const double radius = input.radius;
-  const WallLaw law{composite_modulus(input)};
+  const WallLaw law = law_of(input);
   const double force_unit = law.unit_force(radius);
   double displacement = k_infinity;
   if (until.is_of(Quantity::force)) displacement = radius * law.displacement({}, until.value / force_unit);
@@ -102,25 +88,21 @@ void check(const CheckedRun& run, std::vector<Violation>& found) {
 }  // namespace
 
 Model model() noexcept {
-  return {.name = "hertz",
-          .summary = "elastic sphere between rigid walls, Hertz contacts at fixed radius",
-          .references = k_references,
-          .source = "Zunker and Kamrin (2024), eq. 25",
-          .material = k_material,
-          .options = {},
-          .configurations = k_wall_configurations,
-          .has_free_centre = true,
-          .has_profile = true,
-          .regimes = k_regimes,
-          .events = k_events,
-          .domain = k_domain,
-          .skipped = k_skipped,
-          .bind = bind,
-          .parameters = parameters,
-          .reach = reach,
-          .is_elastic = [](const ModelInput&) { return true; },
-          .draw = draw,
-          .check = check};
+  return contacts::model_of<law_of>({.name = "hertz",
+                                     .summary = "elastic sphere between rigid walls, Hertz contacts at fixed radius",
+                                     .references = k_references,
+                                     .source = "Zunker and Kamrin (2024), eq. 25",
+                                     .material = k_material,
+                                     .options = {},
+                                     .has_profile = true,
+                                     .regimes = k_regimes,
+                                     .domain = k_domain,
+                                     .skipped = k_skipped,
+                                     .parameters = parameters,
+                                     .reach = reach,
+                                     .is_elastic = [](const ModelInput&) { return true; },
+                                     .draw = draw,
+                                     .check = check});
 }
 
 }  // namespace monograin::hertz

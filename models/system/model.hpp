@@ -32,6 +32,7 @@ enum class Dimension {
   length,
   stress,
   surface_energy,
+  stiffness,  ///< force over displacement
   force,
   time,
   velocity,
@@ -157,7 +158,11 @@ struct ModelInput {
   std::string_view integrator{};       ///< integrator that the scenario names, before `auto` is resolved
 
   /// Value of a key in `[material]` [SI]. @throws std::out_of_range if the scenario has no such key
-  [[nodiscard]] double material(const char* key) const { return values.at(key); }
+  [[nodiscard]] double material(const char* key) const {
+    const auto found = values.find(key);
+    if (found != values.end()) return found->second;
+    throw std::out_of_range(std::string("the law asks for '") + key + "', which is no key of its [material]");
+  }
   /// Value of a key in `[material]` [SI]; none if the scenario has no such key.
   [[nodiscard]] std::optional<double> optional_material(const char* key) const {
     const auto found = values.find(key);
@@ -307,7 +312,7 @@ struct Model {
   bool (*can_unload)(const ModelInput& input) = nullptr;
   /// True if unloading retraces the loading curve, so that all work is stored. Null: it does not.
   bool (*is_elastic)(const ModelInput& input) = nullptr;
-  /// Draws material, options and bounds of a program for the stress test. Never null.
+  /// Draws material, options and bounds of a program for the stress test. Null: the stress test leaves the model out.
   ProgramBounds (*draw)(Dice& dice, DrawnMaterial& drawn) = nullptr;
   /// Draws the program of a stress-test scene without walls. Null: the stress test draws a program of walls.
   std::vector<DrawnStep> (*draw_program)(Dice& dice, const DrawnMaterial& drawn, const ProgramBounds& bounds,

@@ -16,6 +16,7 @@
 #include "scenario/model_input.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/schema.hpp"
+#include "scenario/units.hpp"
 #include "scenario/words.hpp"
 #include "scene/scene.hpp"
 
@@ -28,31 +29,7 @@ struct ModelsOptions {
 };
 
 std::string_view si_unit(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::none:
-      return "-";
-    case Dimension::length:
-      return "m";
-    case Dimension::stress:
-      return "Pa";
-    case Dimension::surface_energy:
-      return "J/m^2";
-    case Dimension::force:
-      return "N";
-    case Dimension::time:
-      return "s";
-    case Dimension::velocity:
-      return "m/s";
-    case Dimension::force_rate:
-      return "N/s";
-    case Dimension::angle:
-      return "rad";
-    case Dimension::strain_rate:
-      return "1/s";
-    case Dimension::stress_rate:
-      return "Pa/s";
-  }
-  return "";
+  return dimension == Dimension::none ? "-" : dimension_info(dimension).si;
 }
 
 std::string to_text(const Range& range) {

@@ -48,7 +48,13 @@ int check_files(const std::vector<std::string>& files) {
 int stress(const CommandOptions& options) {
   if (!options.files.empty()) return check_files(options.files);
   DrawnModels models;
-  for (const std::string& name : options.models) models.insert(&model_named(name));
+  for (const std::string& name : options.models) {
+    const Model& model = model_named(name);
+    if (model.draw == nullptr) {
+      throw UsageError(fmt::format("--model {}: the model has no function `draw`, which draws its materials", name));
+    }
+    models.insert(&model);
+  }
   const StressReport report = [&] {
     ProgressBar bar("scenes");
     return run_stress({.seed = options.seed,

@@ -35,6 +35,10 @@ constexpr std::array k_surface_energies{
     Unit{"J/m^2", 1.0},  Unit{"J/m²", 1.0}, Unit{"mJ/m^2", 1e-3},
     Unit{"mJ/m²", 1e-3}, Unit{"N/m", 1.0},  Unit{"mN/m", 1e-3},
 };
+constexpr std::array k_stiffnesses{
+    Unit{"N/m", 1.0},  Unit{"kN/m", 1e3},  Unit{"MN/m", 1e6},  Unit{"GN/m", 1e9},  Unit{"mN/m", 1e-3},
+    Unit{"N/mm", 1e3}, Unit{"kN/mm", 1e6}, Unit{"MN/mm", 1e9}, Unit{"nN/nm", 1.0}, Unit{"uN/um", 1.0},
+};
 constexpr std::array k_forces{
     Unit{"N", 1.0},
     Unit{"kN", 1e3},
@@ -65,11 +69,12 @@ constexpr std::array k_stress_rates{Unit{"Pa/s", 1.0}, Unit{"kPa/s", 1e3}, Unit{
 constexpr std::array k_angles{Unit{"deg", std::numbers::pi / 180.0}, Unit{"rad", 1.0}};
 
 // The limits admit grains from a nanometre to a kilometre, gels and diamond, and durations over 24 decades.
-const std::array<DimensionInfo, 11> k_dimensions{{
+const std::array<DimensionInfo, 12> k_dimensions{{
     {Dimension::none, "a number", "", "0.3", "", 0.0, 1e100, {}},
     {Dimension::length, "a length", "m", "\"10 mm\"", "R0", 1e-12, 1e6, k_lengths},
     {Dimension::stress, "a stress", "Pa", "\"50 MPa\"", "", 1e-6, 1e18, k_stresses},
     {Dimension::surface_energy, "a surface energy", "J/m^2", "\"0.1 J/m^2\"", "", 1e-24, 1e24, k_surface_energies},
+    {Dimension::stiffness, "a stiffness", "N/m", "\"100 kN/m\"", "", 1e-24, 1e24, k_stiffnesses},
     {Dimension::force, "a force", "N", "\"10 N\"", "", 1e-30, 1e30, k_forces},
     {Dimension::time, "a time", "s", "\"1 s\"", "", 1e-15, 1e18, k_times},
     {Dimension::velocity, "a velocity", "m/s", "\"1 mm/s\"", "R0/s", 1e-30, 1e24, k_velocities},

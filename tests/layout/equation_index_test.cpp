@@ -20,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t k_least_rows = 5;
-
 fs::path in_tree(const std::string& path) { return fs::path(MONOGRAIN_SOURCE_DIR) / path; }
 
 bool is_of_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
@@ -182,7 +180,7 @@ TEST(EquationIndex, StandsOnThePageOfEveryModel) {
   for (const std::string& model : models) EXPECT_TRUE(found.contains(model)) << "no page docs/theory/" << model;
   for (const auto& [model, page] : found) {
     EXPECT_TRUE(models.contains(model)) << page << " is about no model";
-    EXPECT_GE(index_of(page).size(), k_least_rows) << page;
+    EXPECT_FALSE(index_of(page).empty()) << page << " has no equation index";
     EXPECT_TRUE(read_text(page).starts_with("(theory-" + model + ")=\n")) << page << " has no label";
   }
 }

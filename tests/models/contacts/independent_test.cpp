@@ -229,7 +229,8 @@ Hysteretic hysteretic_of(const ModelInput& /*input*/) { return {}; }
 TEST(ModelOf, FillsInWhatFollowsFromTheLaw) {
   const Model spring = contacts::model_of<spring_of>(unnamed());
   EXPECT_EQ(spring.configurations.size(), k_wall_configurations.size());
-  EXPECT_EQ(spring.events.size(), contacts::k_events.size());
+  EXPECT_EQ(spring.events.size(), contacts::k_events.size() - 1) << "without a boundary there is no limit";
+  EXPECT_TRUE(spring.has_free_centre);
   EXPECT_FALSE(spring.has_contact_area);
   ASSERT_NE(spring.bind, nullptr);
   const std::map<std::string, double> values{{"stiffness", 2.0}};
@@ -290,6 +291,38 @@ TEST(LawCheck, FindsFunctionsThatDoNotBelongTogether) {
     double work(Branch, double d) const { return 0.25 * d * d; }
   };
   EXPECT_TRUE(contacts::contradiction_in(HalfWork{}, 0.1).starts_with("work(b, d) grows by 0.01 at"));
+}
+
+TEST(LawCheck, FindsAForceThatPulls) {
+  struct Pulling : Spring {
+    double force(Branch, double d) const { return -d; }
+    double slope(Branch, double) const { return -1.0; }
+    double work(Branch, double d) const { return -0.5 * d * d; }
+  };
+  EXPECT_EQ(contacts::contradiction_in(Pulling{}, 0.1),
+            "force(b, d) is -0.02 at displacement 0.02 R0, and the contact opens at 0 R0; expected a force above 0 "
+            "beyond that");
+}
+
+TEST(LawCheck, FindsUnloadingThatDoesNotBelongToLoading) {
+  EXPECT_EQ(contacts::contradiction_in(Hysteretic{}, 0.2), "");
+  EXPECT_EQ(contacts::contradiction_in(HystereticInClosedForm{}, 0.2), "");
+  struct NeverReloads : Hysteretic {
+    void reload(Branch&) const {}
+  };
+  EXPECT_EQ(contacts::contradiction_in(NeverReloads{}, 0.2),
+            "after unloading begins at displacement 0.04 R0 and reloading, force and slope beyond it are 0.0400016 and "
+            "4; without unloading they are 0.0400004 and 1");
+  struct Jumps : Hysteretic {
+    void turn(Branch& b, double d) const { b = {b.is_past_knee, true, d, 0.5 * force(b, d)}; }
+  };
+  EXPECT_EQ(contacts::contradiction_in(Jumps{}, 0.2),
+            "force(b, d) is 0.02 where unloading begins at displacement 0.04 R0, and was 0.04 before");
+  struct WrongSlope : Hysteretic {
+    double slope(const Branch& b, double d) const { return b.unloads ? 3.0 : Hysteretic::slope(b, d); }
+  };
+  EXPECT_EQ(contacts::contradiction_in(WrongSlope{}, 0.2),
+            "slope(b, d) is 3 at displacement 0.039 R0, but force(b, d) grows by 4 there, in unloading");
 }
 
 struct SpringWithAHole : Spring {

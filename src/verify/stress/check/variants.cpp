@@ -66,7 +66,8 @@ double factor_of(const Until& until, const Magnification& by) {
 
 double factor_of(Dimension dimension, const Magnification& by) {
   if (dimension == Dimension::stress) return by.stress;
-  return dimension == Dimension::surface_energy ? by.stress * by.length : 1.0;
+  const bool is_per_length = dimension == Dimension::surface_energy || dimension == Dimension::stiffness;
+  return is_per_length ? by.stress * by.length : 1.0;
 }
 
 /// True if walls that start at different gaps share one program: the start of its first ramp then depends on the wall.

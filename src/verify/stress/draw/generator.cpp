@@ -246,7 +246,9 @@ StressScene draw_stress_scene(std::uint64_t seed, std::uint64_t index, const fs:
                               const DrawnModels& models) {
   if (models.empty()) {
     DrawnModels all;
-    for (const Model& model : model_catalogue()) all.insert(&model);
+    for (const Model& model : model_catalogue()) {
+      if (model.draw != nullptr) all.insert(&model);
+    }
     return draw_stress_scene(seed, index, tables, all);
   }
   Dice dice(seed, index);

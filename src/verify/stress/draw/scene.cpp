@@ -23,6 +23,7 @@ double unit_of(const StressScene& scene, Dimension dimension) {
     case Dimension::stress:
       return scene.stress;
     case Dimension::surface_energy:
+    case Dimension::stiffness:
       return scene.stress * scene.radius;
     case Dimension::force:
       return scene.stress * scene.radius * scene.radius;
