@@ -46,7 +46,7 @@ class Centre {
     velocity_.setZero();
     since_ = 0.0;
   }
-  /// Lets the rest position move on so that it keeps its distance from walls, as far as these agree.
+  /// Moves the rest position with the walls that lead; by least squares if their speeds differ.
   /// @param speeds  one for each class: rate of the displacement of a wall that leads; none of others
   void follow(double xi, std::span<const std::optional<double>> speeds);
   [[nodiscard]] bool follows() const noexcept { return velocity_ != Eigen::Vector3d::Zero(); }

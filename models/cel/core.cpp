@@ -12,8 +12,6 @@ namespace k = constants;
 
 /// Load of the core over Y R0^2 below which it has no direction.
 constexpr double k_no_load = 1e-14;
-/// Part of a unit tensor outside of the basis that is round-off of the normals.
-constexpr double k_nothing_new = 1e-9;
 constexpr std::size_t k_most_shapes = 6;  ///< components of a symmetric tensor
 
 Eigen::Matrix3d symmetric(const Eigen::Matrix3d& a) noexcept { return 0.5 * (a + a.transpose()); }
@@ -30,7 +28,7 @@ bool extend(std::vector<Eigen::Matrix3d>& basis, const Eigen::Matrix3d& tensor) 
   for (int pass = 0; pass < 2; ++pass) {
     for (const Eigen::Matrix3d& known : basis) rest -= contraction(known, rest) * known;
   }
-  if (rest.norm() <= k_nothing_new) return false;
+  if (rest.norm() <= k_same_direction) return false;
   basis.push_back(rest.normalized());
   return true;
 }

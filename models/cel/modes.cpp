@@ -55,7 +55,7 @@ double displacement_ahead(const Particle& p, const Motion& motion, std::size_t i
 /// displacement a little later.
 bool will_touch(const Particle& p, const Motion& motion, std::size_t i, double xi, std::span<const double> y) {
   const ClassState& c = p.classes[i];
-  if (c.takes_force()) return c.contact.F > 0.0 || c.drive.rate() > 0.0;
+  if (c.is_force_controlled()) return c.contact.F > 0.0 || c.drive.rate() > 0.0;
   const double u = c.contact.u;
   return (std::abs(u) > p.slack(i) ? u : displacement_ahead(p, motion, i, xi, y)) > 0.0;
 }
@@ -93,7 +93,7 @@ double value_of(const Guard& guard, const Particle& p, const Motion& motion, dou
     case k_made:
       return (c.contact.u - p.slack(i)) / p.depth();
     case k_lost:
-      return c.takes_force() ? c.drive.value(xi) / c.drive.size() : (c.contact.u + p.slack(i)) / p.depth();
+      return c.is_force_controlled() ? c.drive.value(xi) / c.drive.size() : (c.contact.u + p.slack(i)) / p.depth();
     case k_yield:
       return c.yield.f - k_beyond_yield;
     case k_reversal:
@@ -121,7 +121,7 @@ void GuardSet::arm(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     const int index = static_cast<int>(i);
     const ClassState& c = p.classes[i];
-    if (!c.takes_force()) {
+    if (!c.is_force_controlled()) {
       add(c.touches ? k_lost : k_made, index).is_silent = c.gives_way;
     } else if (c.drive.end() < 0.0) {
       Guard& lost = add(k_lost, index);
@@ -131,7 +131,7 @@ void GuardSet::arm(const Particle& p) {
   }
   add(k_fold, -1);
   add(k_coverage, -1);
-  if (p.layout().directions > 0 && std::ranges::any_of(p.classes, &ClassState::takes_force)) add(k_away, -1);
+  if (p.layout().directions > 0 && std::ranges::any_of(p.classes, &ClassState::is_force_controlled)) add(k_away, -1);
 }
 
 void GuardSet::values(const Particle& p, const Motion& motion, double xi, std::span<double> values) const {

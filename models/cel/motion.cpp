@@ -22,9 +22,9 @@ double slowness(const Particle& p, std::span<const double> rates) noexcept {
   for (std::size_t i = 0; i < p.size(); ++i) {
     const ClassState& c = p.classes[i];
     if (!c.touches) continue;
-    if (c.takes_force() && !(c.contact.F > 0.0)) return 1.0;
+    if (c.is_force_controlled() && !(c.contact.F > 0.0)) return 1.0;
     const double u_rate = c.contact.u_by.coordinate * rates[i];
-    speed = std::max(speed, std::abs(c.takes_force() ? u_rate : c.drive.rate()));
+    speed = std::max(speed, std::abs(c.is_force_controlled() ? u_rate : c.drive.rate()));
     fastest = std::max({fastest, std::abs(u_rate), std::abs(c.dent.h_zeta * rates[p.layout().dent(i)])});
   }
   return speed > 0.0 ? speed / (speed + fastest) : 1.0;
@@ -56,7 +56,8 @@ double Motion::evaluate(Particle& p, double xi, std::span<const double> y) {
   power_ = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const ClassState& c = p.classes[i];
-    power_ += c.count * c.contact.F * (c.takes_force() ? tangent_.displacement_rate(i, rates_) : c.drive.rate());
+    power_ +=
+        c.count * c.contact.F * (c.is_force_controlled() ? tangent_.displacement_rate(i, rates_) : c.drive.rate());
   }
   xi_ = xi;
   revision_ = p.revision();

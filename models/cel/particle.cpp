@@ -68,7 +68,7 @@ std::optional<std::vector<std::size_t>> Particle::let_go(std::span<double> y) {
   std::vector<std::size_t> left;
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes[i];
-    if ((c.touches || c.contact.F > 0.0) && !c.takes_force() && !(c.drive.rate() > 0.0)) left.push_back(i);
+    if ((c.touches || c.contact.F > 0.0) && !c.is_force_controlled() && !(c.drive.rate() > 0.0)) left.push_back(i);
   }
   if (left.empty()) return std::nullopt;
   const double gap = k_gap_of_left_wall * depth_;
@@ -91,7 +91,7 @@ std::optional<std::vector<std::size_t>> Particle::let_go(std::span<double> y) {
 
 void Particle::prescribe(double xi, std::span<double> y) const noexcept {
   for (std::size_t i = 0; i < size(); ++i) {
-    if (classes[i].takes_force()) y[i] = classes[i].drive.value(xi);
+    if (classes[i].is_force_controlled()) y[i] = classes[i].drive.value(xi);
   }
 }
 
@@ -131,7 +131,7 @@ void Particle::evaluate_contacts(std::span<const double> y) {
   for (std::size_t i = 0; i < size(); ++i) {
     ClassState& c = classes[i];
     c.coordinate = y[i];
-    c.contact = contact_by(material_, c.dent, c.l, coverage_.m, c.coordinate, c.takes_force());
+    c.contact = contact_by(material_, c.dent, c.l, coverage_.m, c.coordinate, c.is_force_controlled());
     forces_[i] = c.contact.F;
   }
 }
@@ -172,10 +172,10 @@ void Particle::choose_balance() {
 }
 
 void Particle::follow_walls(double xi) {
-  if (std::ranges::none_of(classes, &ClassState::takes_force)) return;
+  if (std::ranges::none_of(classes, &ClassState::is_force_controlled)) return;
   std::vector<std::optional<double>> speeds;
   for (const ClassState& c : classes) {
-    const bool leads = c.touches && !is_idle(c) && !c.takes_force();
+    const bool leads = c.touches && !is_idle(c) && !c.is_force_controlled();
     speeds.push_back(leads ? std::optional(c.drive.rate()) : std::nullopt);
   }
   centre.follow(xi, speeds);
@@ -185,7 +185,7 @@ void Particle::follow_walls(double xi) {
 void Particle::residual(double xi, std::span<double> residual) const {
   for (std::size_t i = 0; i < size(); ++i) {
     const ClassState& c = classes[i];
-    residual[i] = (c.takes_force() ? c.coordinate : c.displacement) - c.drive.value(xi);
+    residual[i] = (c.is_force_controlled() ? c.coordinate : c.displacement) - c.drive.value(xi);
     residual[layout_.dent(i)] = c.flows ? -c.yield.f : 0.0;
   }
   if (layout_.directions == 0) return;

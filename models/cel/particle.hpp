@@ -71,11 +71,13 @@ struct ClassState {
   double pace = 0.0;  ///< Lam per rate of the dent, if the dent grows
 
   /// True if the own coordinate is the force F, not u.
-  [[nodiscard]] bool takes_force() const noexcept { return drive.is_force_controlled(); }
+  [[nodiscard]] bool is_force_controlled() const noexcept { return drive.is_force_controlled(); }
   /// Lets the wall rest at a displacement.
   void hold(double at) { drive = contacts::WallDrive({at, at, Control::displacement}, 1.0); }
   /// Displacement of the wall at the state that was evaluated; exact if it is prescribed.
-  [[nodiscard]] double position(double xi) const noexcept { return takes_force() ? displacement : drive.value(xi); }
+  [[nodiscard]] double position(double xi) const noexcept {
+    return is_force_controlled() ? displacement : drive.value(xi);
+  }
   /// w = -c'(l)/l, load of the core per force: a force loads the core as far as it does work on the advance.
   [[nodiscard]] double w() const noexcept { return -advance.c_l * per_l; }
 };
@@ -121,12 +123,12 @@ class Particle {
     constexpr double k_times = 10.0;
     return c.contact.F < k_times * Centre::k_weak_spring * depth_;
   }
-  /// Lets a free particle that no wall presses any more go from the walls that do not follow it: the weak spring, which
-  /// has been stretched under load, would press it against them.
-  /// @return the contacts that it opens, without those that were open but for the spring; none if it does not move
+  /// Moves an unloaded free particle off the walls that rest or withdraw. Otherwise the weak spring, which the former
+  /// load has stretched, would press it against them.
+  /// @return the contacts that it opens, without those that the spring alone had closed; none if it does not move
   [[nodiscard]] std::optional<std::vector<std::size_t>> let_go(std::span<double> y);
-  /// Lets the spring of the centre follow the walls that press under a displacement, in the mode that begins, if the
-  /// program prescribes a force, too: that may vanish, and must then not be left with a spring that is stretched.
+  /// If a force is prescribed, too, moves the spring of the centre with the walls that press under a displacement, in
+  /// the mode that begins: the spring must be relaxed when that force vanishes.
   void follow_walls(double xi);
   /// Counts evaluations and choices of equations.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }

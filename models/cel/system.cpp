@@ -59,7 +59,8 @@ std::vector<Unknown> unknowns_of(const Particle& p, std::span<const ContactClass
 /// Rates that the program prescribes, over the largest: of displacements in the first column, of forces in the second.
 Eigen::ArrayX2d direction_of(const Particle& p) {
   Eigen::ArrayX2d rates = Eigen::ArrayX2d::Zero(p.size(), 2);
-  for (std::size_t i = 0; i < p.size(); ++i) rates(i, p.classes[i].takes_force() ? 1 : 0) = p.classes[i].drive.rate();
+  for (std::size_t i = 0; i < p.size(); ++i)
+    rates(i, p.classes[i].is_force_controlled() ? 1 : 0) = p.classes[i].drive.rate();
   if (!p.is_at_rest()) rates /= rates.abs().maxCoeff();
   return rates;
 }
@@ -163,13 +164,13 @@ void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
   const bool takes_force = ramp.control == Control::force && (ramp.start > 0.0 || ramp.end > 0.0);
   c.gives_way = ramp.control == Control::force && !takes_force;
   if (c.gives_way) {
-    if (c.takes_force() || c.contact.u >= -particle_.slack(i))
+    if (c.is_force_controlled() || c.contact.u >= -particle_.slack(i))
       particle_.give_way(i, y);
     else
       c.hold(c.displacement);
     return;
   }
-  if (takes_force != c.takes_force()) y[i] = takes_force ? c.contact.F : c.contact.u;
+  if (takes_force != c.is_force_controlled()) y[i] = takes_force ? c.contact.F : c.contact.u;
   c.drive = contacts::WallDrive(ramp, takes_force ? force_unit_ : length_);
 }
 
@@ -178,7 +179,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   const Eigen::ArrayX2d before = direction_of(particle_);
   for (std::size_t i = 0; i < ramps.size(); ++i) take_up(i, ramps[i], y);
   particle_.forget();
-  // Where a step is only cut in two, the program goes on in the same direction, and the spring rests where it did.
+  // If the new step continues in the direction of the last one, the spring keeps its rest position.
   const double turn = (direction_of(particle_) - before).abs().maxCoeff();
   if (turn > k_same_direction || particle_.centre.follows()) particle_.centre.rest_at(particle_.layout().centre_of(y));
   solve(0.0, y);
@@ -230,7 +231,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     c.touches = guard.kind == k_made && !c.gives_way;
     if (!guard.is_silent) log.push_back({guard.name, guard.index});
     // A wall that gives way moves with the surface that it has met; a force-controlled wall that would pull gives way.
-    if (c.takes_force() || c.gives_way) particle_.give_way(i, y);
+    if (c.is_force_controlled() || c.gives_way) particle_.give_way(i, y);
   }
   solve(xi, y);
   decide_mode(particle_, motion_, xi, y, guards, log);

@@ -82,7 +82,8 @@ void Tangent::set(const Particle& p, bool core_flows) {
       const std::size_t j = moving_[column];
       equations_(row, column) = by[j] + by[Om_] * Om_by_[j] + by_Lam * pace_[j];
     }
-    if (row < p.size() && p.classes[row].takes_force()) equations_.row(row) = Eigen::RowVectorXd::Unit(n + 2, row);
+    if (row < p.size() && p.classes[row].is_force_controlled())
+      equations_.row(row) = Eigen::RowVectorXd::Unit(n + 2, row);
   }
 }
 

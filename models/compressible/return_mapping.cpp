@@ -28,7 +28,7 @@ constexpr int k_most_halvings = 20;
 // guess than this, and than the guess's elastic strain, lies on another branch, behind a loss of uniqueness.
 constexpr double k_nearby = 1e-2;
 // Largest length of a return along the flow, over that of the shortest return. Next to a loss of uniqueness the flow
-// runs along the surface, and errors would move a state by their root, or to anywhere.
+// runs along the surface, and an error e would move a state by sqrt(e) or more.
 constexpr double k_most_detour = 1e3;
 
 /// Yield function for a guess on the far side of a cap that the program does not leave: the tangent of f at the guess's

@@ -173,9 +173,8 @@ class WallContact {
 
   // --- transitions
 
-  /// Takes up the ramp of a step. Values that differ by the round-off of units, of forces and of laws count as equal: a
-  /// wall at rest goes on from where it is, a wall at its dent is not pressed in again, and a ramp between two equal
-  /// values lets the wall rest.
+  /// Takes up the ramp of a step. Values that agree to k_same_value count as equal: a wall at rest goes on from where
+  /// it is, a wall at its dent is not pressed in again, and a ramp between two equal values lets the wall rest.
   /// @param d            displacement of the contact at the end of the last step; used if the ramp is one of force
   /// @param takes_force  false: no force has ever moved the wall
   /// @param carried      by how much a free centre has moved towards the wall

@@ -15,17 +15,14 @@ class WallDrive {
  public:
   WallDrive() = default;
   /// @param unit  unit of what the ramp controls, a displacement [m] or a force [N]
-  WallDrive(const Ramp& ramp, double unit) : ramp_{ramp.start / unit, ramp.end / unit, ramp.control} {
-    find_direction();
-  }
+  WallDrive(const Ramp& ramp, double unit)
+      : ramp_{ramp.start / unit, ramp.end / unit, ramp.control}, direction_(ramp_.direction()) {}
 
-  [[nodiscard]] bool is_force_controlled() const noexcept { return ramp_.control == Control::force; }
+  [[nodiscard]] bool is_force_controlled() const noexcept { return ramp_.is_force_controlled(); }
   [[nodiscard]] double start() const noexcept { return ramp_.start; }
   [[nodiscard]] double end() const noexcept { return ramp_.end; }
-  /// Prescribed value at a step coordinate; exact at both ends, and to the last digit next to zero.
-  [[nodiscard]] double value(double xi) const noexcept { return std::lerp(ramp_.start, ramp_.end, xi); }
-  /// Rate of the prescribed value with the step coordinate.
-  [[nodiscard]] double rate() const noexcept { return ramp_.end - ramp_.start; }
+  [[nodiscard]] double value(double xi) const noexcept { return ramp_.value(xi); }
+  [[nodiscard]] double rate() const noexcept { return ramp_.rate(); }
   /// 1 loading, -1 unloading, 0 holding.
   [[nodiscard]] int direction() const noexcept { return direction_; }
   /// Largest magnitude on the ramp.
@@ -34,7 +31,7 @@ class WallDrive {
   /// Moves the start of the ramp, by no more than round-off.
   void start_at(double value) noexcept {
     ramp_.start = value;
-    find_direction();
+    direction_ = ramp_.direction();
   }
   /// Lets the wall rest, because the ramp is round-off. A displacement stays at its start, so that no force results
   /// from round-off; a force keeps its prescribed values.
@@ -53,10 +50,6 @@ class WallDrive {
   }
 
  private:
-  /// Relative difference up to which two values count as equal.
-
-  void find_direction() noexcept { direction_ = rate() > 0.0 ? 1 : rate() < 0.0 ? -1 : 0; }
-
   Ramp ramp_;
   int direction_ = 0;
 };

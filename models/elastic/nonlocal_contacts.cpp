@@ -51,7 +51,7 @@ Contacts::Contacts(const Formulation& model, std::span<const ContactClass> class
   modes_ = Modes(influence, class_of, !has_modes_of_walls_);
 
   const Eigen::Matrix3Xd mean_normals = mean_normals_of(classes);
-  directions_ = centre == Centre::free ? basis_of(mean_normals, k_same_surroundings) : Eigen::Matrix3Xd(3, 0);
+  directions_ = centre == Centre::free ? basis_of(mean_normals, k_same_direction) : Eigen::Matrix3Xd(3, 0);
   const Eigen::MatrixXd arms = mean_normals.transpose() * directions_;
   for (std::size_t j = 0; j < classes.size(); ++j) arms_[j].head(arms.cols()) = arms.row(as_index(j)).transpose();
 }

@@ -63,7 +63,6 @@ struct ContactState {
 /// support the centre.
 inline constexpr double k_unloaded = 1e-6;
 inline constexpr double k_touching = 1e-10;  ///< gap at which walls begin to bear, over the walls' displacements
-inline constexpr double k_balance = 1e-9;    ///< net force that counts as zero, over the sum of forces
 
 /// Local contacts of all classes, with their surroundings as they are.
 struct Evaluation {

@@ -12,7 +12,7 @@ Target target_of(const Contacts& contacts, bool is_force, double value) {
 
 void set_targets(const Contacts& contacts, std::span<const Ramp> ramps, double xi, std::span<Target> targets) {
   for (std::size_t j = 0; j < targets.size(); ++j) {
-    targets[j] = target_of(contacts, takes_force(ramps[j]), std::lerp(ramps[j].start, ramps[j].end, xi));
+    targets[j] = target_of(contacts, ramps[j].is_force_controlled(), ramps[j].value(xi));
   }
 }
 
@@ -38,7 +38,7 @@ void residual(Contacts& contacts, std::span<const Ramp> ramps, double xi, std::s
   const std::size_t n = contacts.class_count();
   const Evaluation& at = contacts.evaluate(y);
   for (std::size_t j = 0; j < n; ++j) {
-    const Target goal = target_of(contacts, takes_force(ramps[j]), std::lerp(ramps[j].start, ramps[j].end, xi));
+    const Target goal = target_of(contacts, ramps[j].is_force_controlled(), ramps[j].value(xi));
     residual[j] =
         goal.is_force ? y[j] - goal.signed_square : at.local[j].approach - goal.value - contacts.lift(j, at.forces, y);
   }
@@ -55,10 +55,10 @@ void jacobian(Contacts& contacts, std::span<const Ramp> ramps, std::span<const d
     for (std::size_t k = 0; k < contacts.free_count(); ++k)
       jacobian(as_index(n + k), as_index(j)) = contacts.weight(j) * arm[as_index(k)] * force_slope;
     for (std::size_t i = 0; i < n; ++i) {
-      if (takes_force(ramps[i])) continue;
+      if (ramps[i].is_force_controlled()) continue;
       jacobian(as_index(i), as_index(j)) = -contacts.coupling()(as_index(i), as_index(j)) * force_slope;
     }
-    if (takes_force(ramps[j])) {
+    if (ramps[j].is_force_controlled()) {
       jacobian(as_index(j), as_index(j)) = 1.0;
     } else {
       jacobian(as_index(j), as_index(j)) += at.local[j].approach_slope;

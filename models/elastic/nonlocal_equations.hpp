@@ -11,10 +11,6 @@
 
 namespace monograin::nonlocal {
 
-[[nodiscard]] inline bool takes_force(const Ramp& ramp) noexcept { return ramp.control == Control::force; }
-/// Rate of the prescribed value with the step coordinate.
-[[nodiscard]] inline double slope_of(const Ramp& ramp) noexcept { return ramp.end - ramp.start; }
-
 /// Value that is prescribed to the walls of a class.
 struct Target {
   bool is_force = false;

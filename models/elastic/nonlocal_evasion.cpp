@@ -22,7 +22,7 @@ bool clear_walls(std::span<const contacts::Obstacle> walls, const Eigen::Matrix3
   const auto overlaps = [round_off](const contacts::Obstacle& wall, const Eigen::Vector3d& at) {
     return !(free_approach(wall, at, round_off) <= 0.0);
   };
-  return contacts::clear(walls, projector, k_same_surroundings, overlaps, centre);
+  return contacts::clear(walls, projector, k_same_direction, overlaps, centre);
 }
 
 bool release_centre(std::span<const contacts::Obstacle> walls, const Eigen::Matrix3d& projector,

@@ -15,9 +15,8 @@ namespace monograin::nonlocal {
 /// relative to the distance of the centre, whatever the axes along which it moves.
 [[nodiscard]] double free_approach(const contacts::Obstacle& wall, const Eigen::Vector3d& centre,
                                    double round_off = k_round_off);
-/// Moves the centre within the subspace of a projector to the nearest position where no wall overlaps the surface. If
-/// the nearest position clear of the earlier walls overlaps a wall, that wall touches the surface in the result, and
-/// the search goes on in its plane.
+/// Moves the centre within the subspace of a projector to the nearest position where no wall overlaps the surface.
+/// Walls are taken in turn; one that would overlap touches the surface from then on.
 /// @return false, with the centre unchanged, if the walls leave no such position
 [[nodiscard]] bool clear_walls(std::span<const contacts::Obstacle> walls, const Eigen::Matrix3d& projector,
                                Eigen::Vector3d& centre, double round_off = k_round_off);

@@ -86,7 +86,7 @@ void GuardSet::arm(Particle& p) {
 /// Arms the guards of contacts made and lost at walls under displacement control.
 void GuardSet::arm_contacts(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.is_loaded(i)) continue;
+    if (p.is_force_controlled(i)) continue;
     if (!p.mode.is_closed[i])
       add(k_made, as_int(i), 1, "contact-made");
     else
@@ -98,7 +98,7 @@ void GuardSet::arm_contacts(const Particle& p) {
 /// Arms the guards of where an open wall begins and ceases to move a free centre.
 void GuardSet::arm_carriers(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.is_loaded(i) || p.mode.is_closed[i]) continue;
+    if (p.is_force_controlled(i) || p.mode.is_closed[i]) continue;
     Guard& guard =
         p.mode.touches[i] ? add(k_left, as_int(i), -1, "wall-left") : add(k_touched, as_int(i), 1, "wall-touched");
     guard.is_silent = true;
@@ -116,7 +116,7 @@ void GuardSet::arm_impingement(const Particle& p) {
 /// Arms the guards that stop an integrator next to the end of a force that bears a free centre.
 void GuardSet::arm_ends_of_forces(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.is_loaded(i) || p.end_of_force(i) == k_infinity) continue;
+    if (!p.is_force_controlled(i) || p.end_of_force(i) == k_infinity) continue;
     Guard& guard = add(k_force_ends, as_int(i), -1, "force-ends");
     guard.is_silent = guard.is_exact = true;
   }

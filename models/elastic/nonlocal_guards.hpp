@@ -28,8 +28,8 @@ enum GuardKind : int {
 
 /// Margin below which the source's formulation counts as stiffened.
 inline constexpr double k_stiff_margin = 0.25;
-/// Gap at which a wall begins to move a free centre, over the touch tolerance: at the whole tolerance the centre would
-/// move before the wall arrives.
+/// A wall begins to move a free centre at a gap of this share of the touch tolerance. At the whole tolerance the centre
+/// would move too early.
 inline constexpr double k_begins = 1e-3;
 
 /// Two walls, given by their classes, that may meet on the surface of the particle; one pair for each angle.

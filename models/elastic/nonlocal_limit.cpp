@@ -62,7 +62,6 @@ class Path {
 
  private:
   static constexpr int k_newton_limit = 60;
-  static constexpr double k_round_off = 1e-15;
 
   /// Solves the equations' Jacobian bordered by one row, which keeps it regular where the path turns back. The
   /// least-norm solution leaves the centre in place along directions that no contact supports.
@@ -74,8 +73,8 @@ class Path {
     matrix.row(count) = border;
     for (std::size_t j = 0; j < ramps_.size(); ++j) {
       const auto i = static_cast<Eigen::Index>(j);
-      const double slope = slope_of(ramps_[j]);
-      if (!takes_force(ramps_[j]) || slope == 0.0) {
+      const double slope = ramps_[j].rate();
+      if (!ramps_[j].is_force_controlled() || slope == 0.0) {
         matrix(i, count) = -slope;
         continue;
       }

@@ -127,7 +127,7 @@ std::optional<double> limit_displacement(const ModelInput& input, const FirstSte
   for (std::size_t c = 0; c < ramps.size(); ++c) y[c] = ramps[c].start;
   try {
     const auto xi = limit_of_step(contacts, ramps, end, y);
-    return xi ? std::optional(std::lerp(driven->start, driven->end, *xi)) : std::nullopt;
+    return xi ? std::optional(driven->value(*xi)) : std::nullopt;
   } catch (const std::domain_error&) {
     return std::nullopt;  // a contact becomes as wide as the particle, or nothing holds the centre
   }

@@ -24,7 +24,7 @@ double unborne_force(const Contacts& contacts, std::span<const Target> targets, 
   double sum = 0.0;
   for (std::size_t j = 0; j < targets.size(); ++j) {
     const Eigen::Vector3d along = projector * contacts.arm(j);
-    if (!targets[j].is_force || along.norm() <= k_same_surroundings) continue;
+    if (!targets[j].is_force || along.norm() <= k_same_direction) continue;
     push += contacts.weight(j) * targets[j].value * along;
     sum += contacts.weight(j) * targets[j].value;
   }
@@ -43,7 +43,7 @@ bool is_balanced(Contacts& contacts, std::span<const Target> targets, std::span<
   const Evaluation& at = contacts.evaluate(y);
   double sum = 0.0;
   for (std::size_t j = 0; j < targets.size(); ++j) sum += contacts.weight(j) * at.forces[j];
-  if ((contacts.net_force(at.forces).array().abs() > k_balance * sum).any()) return false;
+  if ((contacts.net_force(at.forces).array().abs() > k_no_net_force * sum).any()) return false;
   return unborne_force(contacts, targets, at.stiffness) == 0.0;
 }
 
@@ -136,7 +136,7 @@ void Newton::balance_centre(const Contacts& contacts, const Goal& goal, const Se
   double borne = 0.0;
   for (std::size_t j = 0; j < contacts.class_count(); ++j) borne += contacts.weight(j) * at_.forces[j];
   const Eigen::Matrix3d projector = directions_of_nothing(contacts, [this](std::size_t j) { return at_.stiffness[j]; });
-  if (!((projector * unbalanced).norm() > k_balance * borne)) return;
+  if (!((projector * unbalanced).norm() > k_no_net_force * borne)) return;
   const Eigen::Vector3d rest = corrected_net_force(contacts, goal);
   stiffen_touching(contacts, goal, search, y);
   tangent_.move_centre(contacts, at_.stiffness, rest, centre);

@@ -47,11 +47,11 @@ Particle::Particle(const Settings& settings, std::span<const ContactClass> class
 
 void Particle::take_up(std::span<const Ramp> ramps, std::span<double> y) {
   for (std::size_t i = 0; i < size(); ++i) {
-    const bool was_loaded = is_loaded(i);
-    const double unit = takes_force(ramps[i]) ? settings_.force_unit() : settings_.initial_radius;
+    const bool was_loaded = is_force_controlled(i);
+    const double unit = ramps[i].is_force_controlled() ? settings_.force_unit() : settings_.initial_radius;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
-    if (was_loaded && !is_loaded(i)) y[i] = square_of(y[i]);
-    if (!was_loaded && is_loaded(i)) y[i] = std::pow(std::max(y[i], 0.0), k_force_power);
+    if (was_loaded && !is_force_controlled(i)) y[i] = square_of(y[i]);
+    if (!was_loaded && is_force_controlled(i)) y[i] = std::pow(std::max(y[i], 0.0), k_force_power);
   }
 }
 
@@ -62,7 +62,7 @@ double Particle::end_of_force(std::size_t i) const noexcept {
 
 void Particle::require_pressing_walls(double xi) const {
   for (std::size_t i = 0; i < size(); ++i) {
-    if (is_loaded(i) && prescribed(i, xi + k_ahead) < 0.0) throw_pull(i);
+    if (is_force_controlled(i) && prescribed(i, xi + k_ahead) < 0.0) throw_pull(i);
   }
 }
 
@@ -79,7 +79,7 @@ void Particle::or_pull_that_follows(double xi, auto&& ask) const {
     ask();
   } catch (const std::domain_error&) {
     for (std::size_t i = 0; i < size(); ++i) {
-      if (is_loaded(i) && ramps_[i].end < 0.0 && square_under_force(i, xi) <= scales_.idle) throw_pull(i);
+      if (is_force_controlled(i) && ramps_[i].end < 0.0 && square_under_force(i, xi) <= scales_.idle) throw_pull(i);
     }
     throw;
   }
@@ -90,7 +90,7 @@ void Particle::or_pull_that_follows(double xi, auto&& ask) const {
 std::span<double> Particle::evaluate(double xi, std::span<const double> y) {
   std::ranges::copy(y.first(state_.size()), state_.begin());
   for (std::size_t i = 0; i < size(); ++i) {
-    if (is_loaded(i)) state_[i] = square_under_force(i, xi);
+    if (is_force_controlled(i)) state_[i] = square_under_force(i, xi);
   }
   return state_;
 }
@@ -99,7 +99,7 @@ std::span<double> Particle::evaluate(double xi, std::span<const double> y) {
 void Particle::note(std::span<double> y) const {
   std::ranges::copy(state_, y.begin());
   for (std::size_t i = 0; i < size(); ++i) {
-    if (is_loaded(i)) y[i] = std::pow(state_[i], k_force_power);
+    if (is_force_controlled(i)) y[i] = std::pow(state_[i], k_force_power);
   }
 }
 
@@ -117,7 +117,7 @@ void Particle::solve(double xi, std::span<double> y) {
   evaluate(xi, y);
   // The path begins at y under force control, too: from another depth, the centre would move along another path.
   for (std::size_t i = 0; i < size(); ++i) {
-    if (is_loaded(i)) state_[i] = square_of(y[i]);
+    if (is_force_controlled(i)) state_[i] = square_of(y[i]);
   }
   // A contact that is open in its regime may be loaded beyond an event still to be located. The states before know
   // nothing of it.
@@ -139,10 +139,10 @@ void Particle::carry_to_support(std::span<double> y) {
   std::vector<char> touches;
   for (std::size_t i = 0; i < size(); ++i) {
     const Eigen::Vector3d& arm = contacts_.arm(i);
-    if (is_loaded(i)) {
+    if (is_force_controlled(i)) {
       push += contacts_.weight(i) * ramps_[i].end * arm;
       sum += contacts_.weight(i) * std::abs(ramps_[i].end);
-    } else if (arm.norm() > k_same_surroundings) {
+    } else if (arm.norm() > k_same_direction) {
       walls.push_back({i, arm, ramps_[i].start});
       touches.push_back(state_[i] >= -scales_.touch);
     }
@@ -164,7 +164,7 @@ double Particle::leave_singularity(double xi, std::span<double> y) {
   const double ahead = std::min(xi + k_ahead, 1.0);
   double later = xi;
   for (std::size_t i = 0; i < size(); ++i) {
-    if (!is_loaded(i)) continue;
+    if (!is_force_controlled(i)) continue;
     const double end = end_of_force(i);
     const bool begins = state_[i] <= scales_.touch && prescribed(i, ahead) > prescribed(i, xi);
     if (begins && support_.may_be_held(contacts_, ramps_, state_, k_just_lost * scales_.touch)) later = ahead;
@@ -184,14 +184,14 @@ double Particle::leave_singularity(double xi, std::span<double> y) {
 
 /// dF/dxi of a contact, by the rates found last.
 double Particle::force_rate(std::size_t i) const {
-  if (is_loaded(i)) return slope_of(ramps_[i]);
+  if (is_force_controlled(i)) return ramps_[i].rate();
   const double stiffness = now_[i].stiffness;
   return stiffness > 0.0 ? stiffness * contacts_.law().at(state_[i]).approach_slope * rates_[i] : 0.0;
 }
 
 /// Speed of a wall under force control, by the rates found last.
 double Particle::speed_under_force(std::size_t i) const {
-  double speed = now_[i].stiffness > 0.0 ? slope_of(ramps_[i]) / now_[i].stiffness : 0.0;
+  double speed = now_[i].stiffness > 0.0 ? ramps_[i].rate() / now_[i].stiffness : 0.0;
   for (std::size_t h = 0; h < size(); ++h) speed -= contacts_.coupling()(as_index(i), as_index(h)) * force_rate(h);
   for (std::size_t k = 0; k < contacts_.free_count(); ++k) speed -= contacts_.arm(i)[as_index(k)] * rates_[size() + k];
   return speed;
@@ -201,19 +201,19 @@ void Particle::rates(double xi, std::span<const double> y, std::span<double> dy)
   evaluate_contacts(xi, y);
   for (std::size_t i = 0; i < size(); ++i) {
     drawn_ramps_[i] = ramps_[i];
-    if (!is_loaded(i)) drawn_ramps_[i].end += k_pull * (prescribed(i, xi) - now_[i].displacement);
+    if (!is_force_controlled(i)) drawn_ramps_[i].end += k_pull * (prescribed(i, xi) - now_[i].displacement);
   }
   const Tolerances tolerances{.touch = scales_.touch, .pull = k_pull, .touches = mode.touches};
   or_pull_that_follows(xi, [&] { motion_.find(contacts_, drawn_ramps_, state_, rates_, tolerances); });
   std::ranges::copy(rates_, dy.begin());
   double power = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
-    if (is_loaded(i)) {
+    if (is_force_controlled(i)) {
       // Rate of s^(3/2), the unknown; no other rate depends on it.
       const LocalContact local = contacts_.law().at(std::max(state_[i], 1e-200));
-      dy[i] = slope_of(ramps_[i]) * k_force_power / (2.0 * contacts_.composite_modulus() * local.approach_slope);
+      dy[i] = ramps_[i].rate() * k_force_power / (2.0 * contacts_.composite_modulus() * local.approach_slope);
     }
-    const double speed = is_loaded(i) ? speed_under_force(i) : slope_of(ramps_[i]);
+    const double speed = is_force_controlled(i) ? speed_under_force(i) : ramps_[i].rate();
     power += contacts_.weight(i) * now_[i].force * speed;
   }
   dy[work_place()] = power;
@@ -223,7 +223,7 @@ void Particle::residual(double xi, std::span<const double> y, std::span<const do
   evaluate(xi, y);
   or_pull_that_follows(xi, [&] { nonlocal::residual(contacts_, ramps_, xi, state_, res.first(state_.size())); });
   for (std::size_t i = 0; i < size(); ++i) {
-    if (is_loaded(i)) res[i] = y[i] - std::pow(state_[i], k_force_power);
+    if (is_force_controlled(i)) res[i] = y[i] - std::pow(state_[i], k_force_power);
   }
   rates(xi, y, all_rates_);
   res[work_place()] = dy[work_place()] - all_rates_[work_place()];
@@ -238,9 +238,9 @@ void Particle::residual(double xi, std::span<const double> y, std::span<const do
 void Particle::branch_reach(std::span<const double> y, std::span<double> reach) const {
   std::ranges::fill(reach, k_infinity);
   for (std::size_t i = 0; i < size(); ++i) {
-    const double square = is_loaded(i) ? square_of(y[i]) : y[i];
+    const double square = is_force_controlled(i) ? square_of(y[i]) : y[i];
     reach[i] = contacts_.branch_reach(i, square);
-    if (is_loaded(i)) reach[i] = std::pow(square + reach[i], k_force_power) - y[i];
+    if (is_force_controlled(i)) reach[i] = std::pow(square + reach[i], k_force_power) - y[i];
   }
 }
 

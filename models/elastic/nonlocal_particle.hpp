@@ -19,7 +19,7 @@
 
 namespace monograin::nonlocal {
 
-/// Distance in xi from the end of a force that bears a free centre at which an integrator stops.
+/// An integrator stops at this distance in xi before a force that supports a free centre vanishes.
 inline constexpr double k_end_of_force = 1e-8;
 /// Gap up to which a wall counts as just lost, over the touch tolerance. A contact is lost at that tolerance; the rest
 /// allows for the error of that event.
@@ -53,7 +53,7 @@ class Particle {
   /// Takes up the ramps [m, N] of a step, and converts the unknowns of walls whose control changes.
   void take_up(std::span<const Ramp> ramps, std::span<double> y);
   [[nodiscard]] const Ramp& ramp(std::size_t i) const noexcept { return ramps_[i]; }
-  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return takes_force(ramps_[i]); }
+  [[nodiscard]] bool is_force_controlled(std::size_t i) const noexcept { return ramps_[i].is_force_controlled(); }
   /// The xi at which a force falls to zero in this step; k_infinity if it does not.
   [[nodiscard]] double end_of_force(std::size_t i) const noexcept;
   /// @throws DomainError if a wall would have to pull just after an instant
@@ -70,7 +70,7 @@ class Particle {
   [[nodiscard]] const ContactState& contact(std::size_t i) const noexcept { return now_[i]; }
   /// Displacement of a wall; as prescribed, or in the state of evaluate_contacts().
   [[nodiscard]] double displacement(std::size_t i, double xi) const noexcept {
-    return is_loaded(i) ? now_[i].displacement : prescribed(i, xi);
+    return is_force_controlled(i) ? now_[i].displacement : prescribed(i, xi);
   }
   /// Displacement of a wall towards the centre of the particle, wherever that is.
   [[nodiscard]] double depth(std::size_t i, double xi) const noexcept {
@@ -101,9 +101,7 @@ class Particle {
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y);
 
  private:
-  [[nodiscard]] double prescribed(std::size_t i, double xi) const noexcept {
-    return std::lerp(ramps_[i].start, ramps_[i].end, xi);
-  }
+  [[nodiscard]] double prescribed(std::size_t i, double xi) const noexcept { return ramps_[i].value(xi); }
   [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
   void or_pull_that_follows(double xi, auto&& ask) const;
   void note(std::span<double> y) const;

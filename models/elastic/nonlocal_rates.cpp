@@ -29,8 +29,8 @@ double closing(double signed_square, double touch) {
 double error_decay(std::span<const Ramp> ramps, std::span<const double> forces, double least) noexcept {
   double decay = least;
   for (std::size_t j = 0; j < ramps.size(); ++j) {
-    const bool is_borne = takes_force(ramps[j]) && forces[j] > 0.0;
-    if (is_borne) decay = std::max(decay, -k_hurry * slope_of(ramps[j]) / forces[j]);
+    const bool is_borne = ramps[j].is_force_controlled() && forces[j] > 0.0;
+    if (is_borne) decay = std::max(decay, -k_hurry * ramps[j].rate() / forces[j]);
   }
   return decay;
 }
@@ -50,7 +50,7 @@ void Rates::find(Contacts& contacts, std::span<const Ramp> ramps, std::span<cons
   const bool is_free = contacts.free_count() > 0;
   if (is_free) support_.sort_near(contacts, ramps, y, 2.0 * tolerances.touch);
   for (std::size_t j = 0; j < n; ++j) {
-    const bool gives_way = takes_force(ramps[j]) || (is_free && support_.is_redundant(j));
+    const bool gives_way = ramps[j].is_force_controlled() || (is_free && support_.is_redundant(j));
     stiffness_[j] = gives_way ? 0.0 : at.stiffness[j];
   }
   set_approach_rates_of_walls(contacts, ramps);
@@ -60,9 +60,9 @@ void Rates::find(Contacts& contacts, std::span<const Ramp> ramps, std::span<cons
   if (is_free) let_centre_follow(contacts, {ramps, y, at.forces, tolerances}, dy);
   for (std::size_t j = 0; j < n; ++j) {
     dy[j] = tangent_.approach(j) / at.local[j].approach_slope;
-    if (takes_force(ramps[j])) {
+    if (ramps[j].is_force_controlled()) {
       const double by_square = at.stiffness[j] * at.local[j].approach_slope;
-      dy[j] = slope_of(ramps[j]) == 0.0 ? 0.0 : slope_of(ramps[j]) / by_square;
+      dy[j] = ramps[j].rate() == 0.0 ? 0.0 : ramps[j].rate() / by_square;
     }
   }
 }
@@ -75,15 +75,16 @@ bool Rates::find_unloaded(const Contacts& contacts, const State& now, std::span<
   if (contacts.free_count() == 0) return false;
   obstacles_.clear();
   for (std::size_t j = 0; j < n; ++j) {
-    if (now.y[j] > 0.0 || (takes_force(now.ramps[j]) && slope_of(now.ramps[j]) != 0.0)) return false;
-    const double rate = slope_of(now.ramps[j]) - closing(now.y[j], now.tolerances.touch);
-    if (!takes_force(now.ramps[j]) && now.tolerances.may_push(j) && std::isfinite(rate))
+    if (now.y[j] > 0.0 || (now.ramps[j].is_force_controlled() && now.ramps[j].rate() != 0.0)) return false;
+    const double rate = now.ramps[j].rate() - closing(now.y[j], now.tolerances.touch);
+    if (!now.ramps[j].is_force_controlled() && now.tolerances.may_push(j) && std::isfinite(rate))
       obstacles_.push_back({j, contacts.arm(j), rate});
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(obstacles_, Eigen::Matrix3d::Identity(), velocity)) return false;
   for (std::size_t j = 0; j < n; ++j) {
-    dy[j] = takes_force(now.ramps[j]) ? 0.0 : free_approach({j, contacts.arm(j), slope_of(now.ramps[j])}, velocity);
+    dy[j] =
+        now.ramps[j].is_force_controlled() ? 0.0 : free_approach({j, contacts.arm(j), now.ramps[j].rate()}, velocity);
   }
   for (const contacts::Obstacle& wall : obstacles_)
     dy[wall.index] = std::min(dy[wall.index], closing(now.y[wall.index], now.tolerances.touch));
@@ -95,9 +96,9 @@ bool Rates::find_unloaded(const Contacts& contacts, const State& now, std::span<
 void Rates::set_approach_rates_of_walls(const Contacts& contacts, std::span<const Ramp> ramps) {
   for (std::size_t j = 0; j < ramps.size(); ++j) {
     double& rate = tangent_.approach(j);
-    rate = takes_force(ramps[j]) ? 0.0 : slope_of(ramps[j]);
+    rate = ramps[j].is_force_controlled() ? 0.0 : ramps[j].rate();
     for (std::size_t h = 0; h < ramps.size(); ++h) {
-      if (takes_force(ramps[h])) rate += contacts.coupling()(as_index(j), as_index(h)) * slope_of(ramps[h]);
+      if (ramps[h].is_force_controlled()) rate += contacts.coupling()(as_index(j), as_index(h)) * ramps[h].rate();
     }
   }
 }
@@ -109,14 +110,15 @@ void Rates::let_centre_follow(Contacts& contacts, const State& now, std::span<do
   const std::size_t n = contacts.class_count();
   const bool is_first_touch = carries_no_load(stiffness_);
   for (std::size_t j = 0; is_first_touch && j < n; ++j) {
-    const bool is_touching = !takes_force(now.ramps[j]) && now.y[j] == 0.0 && tangent_.approach(j) >= 0.0;
+    const bool is_touching = !now.ramps[j].is_force_controlled() && now.y[j] == 0.0 && tangent_.approach(j) >= 0.0;
     if (is_touching && !support_.is_redundant(j)) stiffness_[j] = 1.0;
   }
   const Eigen::Vector3d error = error_against_forces(contacts, now);
   Eigen::Vector3d net = Eigen::Vector3d::Zero();
   double pressing = 0.0;
   for (std::size_t j = 0; j < n; ++j) {
-    const double force_rate = takes_force(now.ramps[j]) ? slope_of(now.ramps[j]) : stiffness_[j] * tangent_.approach(j);
+    const double force_rate =
+        now.ramps[j].is_force_controlled() ? now.ramps[j].rate() : stiffness_[j] * tangent_.approach(j);
     net += contacts.weight(j) * force_rate * contacts.arm(j);
     // The tolerance is relative to all force rates that walls would cause, and to the forces where no rate is to
     // change.
@@ -130,7 +132,7 @@ void Rates::let_centre_follow(Contacts& contacts, const State& now, std::span<do
   const Eigen::Matrix3d projector = directions_of_nothing(contacts, [this](std::size_t j) { return stiffness_[j]; });
   const double left = (projector * (net + now.tolerances.pull * error)).norm();
   if (support_.has_redundant_walls()) let_idle_walls_push(contacts, now, dy);
-  if (left > k_balance * pressing &&
+  if (left > k_no_net_force * pressing &&
       !support_.may_be_held(contacts, now.ramps, now.y, reach_of_support(contacts, now))) {
     throw DomainError(Limit::centre_driven_away);
   }
@@ -142,23 +144,23 @@ Eigen::Vector3d Rates::error_against_forces(const Contacts& contacts, const Stat
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
   bool is_forced = false;
   for (std::size_t j = 0; j < now.ramps.size(); ++j)
-    is_forced = is_forced || (takes_force(now.ramps[j]) && now.y[j] > now.tolerances.touch);
+    is_forced = is_forced || (now.ramps[j].is_force_controlled() && now.y[j] > now.tolerances.touch);
   for (std::size_t j = 0; is_forced && j < now.ramps.size(); ++j) {
     if (!support_.is_redundant(j)) error += contacts.weight(j) * now.forces[j] * contacts.arm(j);
   }
   return error;
 }
 
-/// Gap up to which walls may bear forces that no contact bears. Touching walls support the centre at once, if they can
-/// bear. Where a force ends, walls as near as its contact is deep count, too: errors separate them just before.
+/// Largest gap at which an open wall counts as a support of the centre: the touch tolerance; while a prescribed force
+/// falls to zero, the depth of its contact, because errors open the other walls just before the end.
 double Rates::reach_of_support(const Contacts& contacts, const State& now) const {
   const Eigen::Matrix3d unheld = support_.unheld_directions(contacts);
   double near = now.tolerances.touch;
   for (std::size_t j = 0; j < now.ramps.size(); ++j) {
     // A force that contacts bear already, or that does not shrink, says nothing about the gaps of walls that may bear
     // others.
-    const bool is_shrinking = takes_force(now.ramps[j]) && slope_of(now.ramps[j]) < 0.0;
-    const bool says_so = is_shrinking && (unheld * contacts.arm(j)).norm() > k_same_surroundings;
+    const bool is_shrinking = now.ramps[j].is_force_controlled() && now.ramps[j].rate() < 0.0;
+    const bool says_so = is_shrinking && (unheld * contacts.arm(j)).norm() > k_same_direction;
     near = std::max(near, says_so ? now.y[j] : k_unloaded * now.y[j]);
   }
   return near;
@@ -171,7 +173,7 @@ void Rates::let_idle_walls_push(const Contacts& contacts, const State& now, std:
   obstacles_.clear();
   for (std::size_t j = 0; j < n; ++j) {
     const double rate = tangent_.approach(j) - closing(now.y[j], now.tolerances.touch);
-    const bool pushes = support_.is_redundant(j) && !takes_force(now.ramps[j]) && now.tolerances.may_push(j);
+    const bool pushes = support_.is_redundant(j) && !now.ramps[j].is_force_controlled() && now.tolerances.may_push(j);
     if (pushes && std::isfinite(rate)) obstacles_.push_back({j, contacts.arm(j), rate});
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
@@ -190,7 +192,8 @@ void Rates::let_idle_walls_push(const Contacts& contacts, const State& now, std:
 void Rates::let_unheld_centre_go(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const char> is_closed,
                                  const Eigen::Vector3d& missing, std::span<double> balance) {
   support_.sort(
-      contacts, [&](std::size_t j) { return is_closed[j]; }, [&](std::size_t j) { return takes_force(ramps[j]); });
+      contacts, [&](std::size_t j) { return is_closed[j]; },
+      [&](std::size_t j) { return ramps[j].is_force_controlled(); });
   const Eigen::Matrix3d projector = support_.unheld_directions(contacts);
   if (projector.trace() < 0.5) return;
   // Each row holds either a rate or a force: in short steps the far larger rates would hide the force in a mixed row.

@@ -34,9 +34,9 @@ void resolve_regimes(Particle& p, std::span<const ContactClass> classes, bool is
   const bool are_exact = !is_first_step && !p.has_free_centre();
   for (std::size_t i = 0; i < p.size(); ++i) {
     const bool was_closed = p.mode.is_closed[i];
-    if (are_exact && !was_closed && !p.is_loaded(i) && p.state()[i] <= touch) continue;
+    if (are_exact && !was_closed && !p.is_force_controlled(i) && p.state()[i] <= touch) continue;
     double square = p.state()[i];
-    if (p.is_loaded(i)) {
+    if (p.is_force_controlled(i)) {
       square = std::max(p.ramp(i).start, p.ramp(i).end);
     } else if (std::abs(square) <= k_just_lost * touch) {
       square = p.square_ahead(i, 0.0).value_or(0.0);
@@ -83,7 +83,7 @@ void resolve_others(Particle& p, std::span<const Guard> fired, double xi, std::v
     const auto comes_to_rest = [&] { return !p.has_free_centre() && p.comes_to_rest(i, xi); };
     const bool is_elsewhere = was_closed ? p.state()[i] < -touch || comes_to_rest() : p.state()[i] > touch;
     const auto is_own = [&](const Guard& guard) { return guard.kind <= k_lost && guard.index == static_cast<int>(i); };
-    if (p.is_loaded(i) || !is_elsewhere || std::ranges::any_of(fired, is_own)) continue;
+    if (p.is_force_controlled(i) || !is_elsewhere || std::ranges::any_of(fired, is_own)) continue;
     p.mode.is_closed[i] = !was_closed;
     log.push_back(event_of(!was_closed, i));
   }

@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 2> k_regime_words{"open", "elastic"};
 constexpr double k_touch = 1e-13;
 // Touch tolerance of a free centre, over the deepest contact: its s has the forces' round-off to the power 2/3.
 constexpr double k_touch_of_free_centre = 1e-9;
-// Least value of a contact's guard at the touch tolerance: a wall at rest is well off what integrators take for zero.
+// Value of a contact's guard at the touch tolerance, large enough that no integrator takes a wall at rest for a root.
 constexpr double k_guard_at_touch = 1e-12;
 // Largest contact radius over R0 with all terms. Approach and force depend on 1 - a, of which a has ever fewer digits;
 // beyond this radius, the approach has less than eleven.

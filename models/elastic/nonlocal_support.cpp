@@ -27,7 +27,7 @@ bool may_balance(const Contacts& contacts, std::span<const Target> targets, std:
   std::vector<Eigen::Vector3d> unloading;
   for (std::size_t j = 0; j < targets.size(); ++j) {
     const Eigen::Vector3d& arm = contacts.arm(j);
-    if (targets[j].is_force || y[j] < -near || !(arm.norm() > k_same_surroundings)) continue;
+    if (targets[j].is_force || y[j] < -near || !(arm.norm() > k_same_direction)) continue;
     others.push_back(arm.normalized());
     if (y[j] > 0.0) unloading.push_back(-others.back());
   }
@@ -56,11 +56,11 @@ bool is_held_softly(const Contacts& contacts, std::span<const Ramp> ramps, std::
     const Eigen::MatrixXd along = contacts.weight(j) * arm * arm.transpose();
     reach += along;
     // A wall under a force follows the centre.
-    if (y[j] > s && !takes_force(ramps[j])) hold += along;
+    if (y[j] > s && !ramps[j].is_force_controlled()) hold += along;
   }
   const auto rank = [](const Eigen::MatrixXd& matrix) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
-    return (solver.eigenvalues().array() > k_same_surroundings).count();
+    return (solver.eigenvalues().array() > k_same_direction).count();
   };
   return rank(hold) < rank(reach);
 }
@@ -76,14 +76,14 @@ void CentreSupport::find_redundant(const Contacts& contacts) {
   for (contacts::Obstacle& wall : obstacles_) {
     wall.displacement = 1.0;
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    walls_[wall.index].is_redundant = clear_walls(obstacles_, Eigen::Matrix3d::Identity(), centre, k_same_surroundings);
+    walls_[wall.index].is_redundant = clear_walls(obstacles_, Eigen::Matrix3d::Identity(), centre, k_same_direction);
     wall.displacement = 0.0;
   }
 }
 
 void CentreSupport::sort_near(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
                               double near) {
-  const auto is_force = [&](std::size_t j) { return takes_force(ramps[j]); };
+  const auto is_force = [&](std::size_t j) { return ramps[j].is_force_controlled(); };
   sort(
       contacts,
       [&](std::size_t j) { return is_force(j) ? y[j] > 0.0 || ramps[j].end != ramps[j].start : y[j] >= -near; },
@@ -118,7 +118,7 @@ bool CentreSupport::may_be_held(Contacts& contacts, std::span<const Ramp> ramps,
   const Evaluation& at = contacts.evaluate(y);
   std::vector<Target> later(walls_.size());
   for (std::size_t j = 0; j < walls_.size(); ++j) {
-    const bool is_force = takes_force(ramps[j]);
+    const bool is_force = ramps[j].is_force_controlled();
     const double force = std::max(0.0, std::lerp(at.forces[j], ramps[j].end, k_little));
     later[j] = {.is_force = is_force, .value = is_force ? force : 0.0};
   }
@@ -131,7 +131,7 @@ Eigen::Matrix3d CentreSupport::unheld_directions(const Contacts& contacts) const
   projector.topLeftCorner(free, free).setIdentity();
   for (std::size_t j = 0; j < walls_.size(); ++j) {
     const Eigen::Vector3d along = projector * contacts.arm(j);
-    if (walls_[j].holds && along.norm() > k_same_surroundings)
+    if (walls_[j].holds && along.norm() > k_same_direction)
       projector -= along * along.transpose() / along.squaredNorm();
   }
   return projector;

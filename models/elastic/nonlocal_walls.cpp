@@ -22,7 +22,7 @@ void require_same_surroundings(const Eigen::MatrixXd& by_wall, const Eigen::Matr
   for (std::size_t i = 0; i < walls.size(); ++i) {
     const std::size_t own = walls[i].contact_class;
     const double difference = (by_wall.row(as_index(i)) - coupling.row(as_index(own))).cwiseAbs().maxCoeff();
-    if (difference > k_same_surroundings * (1.0 + coupling.cwiseAbs().maxCoeff())) {
+    if (difference > k_same_direction * (1.0 + coupling.cwiseAbs().maxCoeff())) {
       throw std::invalid_argument("the walls of '" + classes[own].name +
                                   "' do not share a history: forces around them differ by " +
                                   std::to_string(difference) + " in their effect");
@@ -34,7 +34,7 @@ void require_same_surroundings(const Eigen::MatrixXd& by_wall, const Eigen::Matr
 void count_neighbour(std::vector<Neighbours>& neighbours, std::size_t contact_class, double angle,
                      double poisson_ratio) {
   const auto alike = std::ranges::find_if(neighbours, [&](const Neighbours& other) {
-    return other.contact_class == contact_class && std::abs(other.angle - angle) < k_same_surroundings;
+    return other.contact_class == contact_class && std::abs(other.angle - angle) < k_same_direction;
   });
   if (alike != neighbours.end())
     ++alike->count;

@@ -17,8 +17,6 @@ namespace monograin::nonlocal {
 
 /// Least angle between two walls [rad]. Eq. 18 is for a point force and diverges as the angle goes to zero.
 constexpr double k_least_wall_angle = 0.05;
-/// Differences of directions and couplings up to here are round-off.
-constexpr double k_same_surroundings = 1e-9;
 
 [[nodiscard]] inline Eigen::Index as_index(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
 

@@ -22,7 +22,6 @@ enum class RadiusRule {
   gated,    ///< all touching contacts; only while a contact at its largest overlap is driven inwards
   yielded,  ///< yielded contacts at their largest overlap; only while one of them is driven inwards
   seed,     ///< all touching contacts; always (eq. 37 to the letter)
-  fixed     ///< R = R0 for ever
 };
 
 /// True if a contact in a regime takes part in the growth.
@@ -33,8 +32,6 @@ enum class RadiusRule {
       return touches(regime);
     case RadiusRule::yielded:
       return regime == Regime::fully_plastic;
-    case RadiusRule::fixed:
-      return false;
   }
   return false;
 }

@@ -56,7 +56,7 @@ double search_maximum(double a, double b, double& best, Function&& function) {
 /// True for a contact whose peeling edge supports a free centre: its wall is under displacement control, and it acts on
 /// the centre.
 bool supports_by_peeling(const Particle& p, std::size_t i) {
-  return p.branch(i).edge.peels() && !p.is_loaded(i) && p.centre().acts(i);
+  return p.branch(i).edge.peels() && !p.is_force_controlled(i) && p.centre().acts(i);
 }
 
 /// First contact whose peeling edge is beyond pull-off, if any. Towards pull-off its stiffness falls without bound, so
@@ -183,7 +183,7 @@ class BalanceSearch {
   /// peel, the search may also end beyond a fold, at a minimum of the net force.
   /// @throws std::domain_error if forces do not balance
   void require_balance() {
-    const double round_off = p_.force_round_off() + k_no_force * p_.magnitude_of_forces();
+    const double round_off = p_.force_round_off() + k_no_net_force * p_.magnitude_of_forces();
     if (is_only_one_ ? is_stuck() : p_.centre().force().norm() <= round_off) return;
     if (std::abs(centre_stiffness(p_).value) < k_at_fold) throw DomainError(Limit::centre_fold);
     throw DomainError(Limit::no_solution, "the balance of forces on the free centre was not found");
@@ -251,7 +251,7 @@ bool is_any_softened(const Particle& p) noexcept {
 CentreStiffness centre_stiffness(Particle& p) {
   return p.centre().softest([&](std::size_t i, double along) {
     const ContactBranch& branch = p.branch(i);
-    if (!branch.touches() || p.is_loaded(i)) return std::pair(0.0, 0.0);
+    if (!branch.touches() || p.is_force_controlled(i)) return std::pair(0.0, 0.0);
     const Contact& now = p.contact(i).contact;
     const double count = p.count(i) * along * along;
     const double tangent = branch.tangent_stiffness(p.law(), now);

@@ -26,9 +26,9 @@ inline constexpr double k_at_fold = 1e-2;
 /// Guard of a fold: centre_stiffness() less the value at which the fold counts as reached; negative beyond.
 [[nodiscard]] double centre_stiffness_guard(Particle& p);
 
-/// Checks that contacts softened past their peak leave the equilibrium of a free centre unique. Such a contact bears
-/// less when it gives way: where there are several, one may go in while the others unload, and the centre has other
-/// equilibria beside the one where all go in. Does nothing while an edge peels.
+/// Checks that contacts softened past their peak leave the equilibrium of a free centre unique. The force of such a
+/// contact falls with its overlap. With several of them, one may soften further while the others unload, and the
+/// equilibrium is not unique. Does nothing while an edge peels.
 /// @throws std::domain_error if the stiffness of the centre is negative in some direction
 void check_softening(const Particle& p);
 

@@ -12,10 +12,8 @@ namespace monograin::mdr {
 
 class ContactCaps {
  public:
-  /// Without pairs if the apparent radius cannot grow.
   explicit ContactCaps(const Setup& setup)
-      : pairs_(setup.grows() ? cap_pairs_of(setup.classes) : std::vector<CapPair>{}),
-        stops_(setup.settings.stops_at_cap_intersection) {}
+      : pairs_(cap_pairs_of(setup.classes)), stops_(setup.settings.stops_at_cap_intersection) {}
 
   /// Before the first step: no caps have met.
   void start() noexcept {

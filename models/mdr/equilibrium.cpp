@@ -27,7 +27,7 @@ bool peels_anywhere(const Particle& p) noexcept {
 void move_walls(const Particle& p, double xi, std::span<double> y) {
   if (!p.setup().takes_forces) return;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.is_loaded(i)) continue;
+    if (!p.is_force_controlled(i)) continue;
     double& wall = y[p.setup().wall_index[i]];
     wall = p.branch(i).displacement_under(p.law(), y[k_radius], p.drive(i).value(xi), wall);
   }
@@ -36,7 +36,7 @@ void move_walls(const Particle& p, double xi, std::span<double> y) {
 void record_walls(const Particle& p, double xi, std::span<double> y) noexcept {
   if (!p.setup().takes_forces) return;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.setup().classes[i].takes_force && !p.is_loaded(i))
+    if (p.setup().classes[i].takes_force && !p.is_force_controlled(i))
       y[p.setup().wall_index[i]] = p.walls().position(i, xi) + p.centre().moved_towards(i, y.subspan(k_centre));
   }
 }

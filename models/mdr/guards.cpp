@@ -24,7 +24,7 @@ bool goes_one_way(const Particle& p, const Motion& now) {
   bool goes_out = false;
   for (std::size_t i = 0; i < p.size(); ++i) {
     // As a contact grows deeper, the lever of its force on the volume may fall by more than the force grows.
-    if (p.is_loaded(i) || 2.0 * std::max(p.drive(i).start(), p.drive(i).end()) > 1.0 - p.at().r) return false;
+    if (p.is_force_controlled(i) || 2.0 * std::max(p.drive(i).start(), p.drive(i).end()) > 1.0 - p.at().r) return false;
     const double rate = overlap_rate(p, i, now);
     goes_in = goes_in || rate > 0.0;
     goes_out = goes_out || rate < 0.0;
@@ -36,7 +36,7 @@ bool goes_one_way(const Particle& p, const Motion& now) {
 
 double contact_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap) {
   // Under force a contact lasts as long as the force presses; a program that returns exactly to zero does not open it.
-  if (p.is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost)) {
+  if (p.is_force_controlled(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost)) {
     const double scale = p.drive(i).size();
     return scale > 0.0 ? p.drive(i).value(xi) / scale + (kind == k_lost ? k_same_overlap : 0.0) : 0.0;
   }
@@ -64,10 +64,10 @@ double edge_guard(const Particle& p, int kind, std::size_t i, double xi, double 
   const Frame now = branch.frame(p.law(), p.at().r, overlap);
   if (kind == k_pull_off) {
     const PullOff& limits = branch.pull_off(p.law(), now.indenter);
-    return p.is_loaded(i) ? pull_off_guard(limits, p.drive(i).value(xi)) : pull_off_guard(limits, now);
+    return p.is_force_controlled(i) ? pull_off_guard(limits, p.drive(i).value(xi)) : pull_off_guard(limits, now);
   }
   // An edge of zero radius has no springs: the sign of the prescribed force decides whether it follows or peels.
-  if (branch.edge.radius == 0.0 && p.is_loaded(i)) {
+  if (branch.edge.radius == 0.0 && p.is_force_controlled(i)) {
     return contact_guard(p, kind == k_peel ? k_lost : k_made, i, xi, overlap);
   }
   return kind == k_peel ? peel_guard(branch.edge, now, p.law().adhesion())
@@ -97,9 +97,9 @@ void GuardSet::arm(Particle& p, const ContactCaps& caps, double xi, std::span<co
       list_.push_back({k_caps, static_cast<int>(k), 1, "caps-intersect"});
     }
   }
-  if (p.setup().grows() && p.law().material.bulk_compliance > 0.0) list_.push_back({k_volume, -1, -1, "volume-limit"});
+  if (p.law().material.bulk_compliance > 0.0) list_.push_back({k_volume, -1, -1, "volume-limit"});
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.is_loaded(i) || 1.0 - p.drive(i).end() < 2.0 * k_least_distance || p.centre().is_free()) {
+    if (p.is_force_controlled(i) || 1.0 - p.drive(i).end() < 2.0 * k_least_distance || p.centre().is_free()) {
       list_.push_back({k_centre_reached, static_cast<int>(i), -1, "limit"});
     }
   }
@@ -114,7 +114,7 @@ void GuardSet::arm_growth(const Particle& p, const Motion& now) {
     list_.push_back({k_singular, -1, -1, "singular-growth"});
     // Without force-controlled walls this guard equals k_singular.
     if (p.setup().takes_forces) list_.push_back({k_covered, -1, -1, "singular-growth"});
-  } else if (p.setup().grows() && gate_is_open(p, now)) {
+  } else if (gate_is_open(p, now)) {
     list_.push_back({k_growth_on, -1, 1, "growth-on"});
     // The share of a contact in the demand for growth may change sign just before the contact is lost.
     for (Guard& guard : list_) guard.is_branch_end = guard.is_branch_end || guard.kind == k_lost;
@@ -123,7 +123,7 @@ void GuardSet::arm_growth(const Particle& p, const Motion& now) {
 
 GuardSet::Course GuardSet::course_of(const Particle& p, std::size_t i, const Motion& now) {
   const double rate = overlap_rate(p, i, now);
-  const bool is_free = !p.is_loaded(i) && p.centre().acts(i);
+  const bool is_free = !p.is_force_controlled(i) && p.centre().acts(i);
   const bool may_turn = p.mode.is_growing || is_free;
   return {.is_free = is_free,
           .may_turn = may_turn,
@@ -134,8 +134,8 @@ GuardSet::Course GuardSet::course_of(const Particle& p, std::size_t i, const Mot
 /// Lists a guard, unless it depends on a linear overlap or a prescribed force that does not reach it in this step.
 void GuardSet::add_if_reached(const Particle& p, std::size_t i, const Course& course, int kind, int direction,
                               std::string_view name) {
-  const bool is_linear = !course.may_turn && !p.is_loaded(i);  // overlap linear in xi, radius held
-  const bool is_by_force = p.is_loaded(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost);
+  const bool is_linear = !course.may_turn && !p.is_force_controlled(i);  // overlap linear in xi, radius held
+  const bool is_by_force = p.is_force_controlled(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost);
   const double last_overlap = p.drive(i).end() + p.at().r;
   const bool is_known = is_linear || is_by_force;
   if (is_known && direction * contact_guard(p, kind, i, 1.0, last_overlap) < -1e-9) return;
@@ -177,7 +177,7 @@ void GuardSet::arm_touch(const Particle& p, std::size_t i, const Course& course)
 void GuardSet::arm_primary_branch(const Particle& p, std::size_t i, const Motion& now, const Course& course) {
   const int index = static_cast<int>(i);
   const bool is_shifted = p.law().is_shifted();
-  const bool wall_retreats = p.is_loaded(i) || (wall_rate(p, i, now) < 0.0 && !is_shifted);
+  const bool wall_retreats = p.is_force_controlled(i) || (wall_rate(p, i, now) < 0.0 && !is_shifted);
   const bool may_retreat = course.is_free || (course.may_turn && wall_retreats);
   if (may_retreat) list_.push_back({k_retreat, index, -1, "retreat"});
   const bool is_elastic = p.branch(i).regime == Regime::elastic;
@@ -212,7 +212,7 @@ void GuardSet::arm_edge(const Particle& p, std::size_t i, const Course& course) 
 /// no extremum within a step, nor has the force of a sticking edge where only its own wall moves.
 void GuardSet::arm_tension(const Particle& p, std::size_t i, const Motion& now, const Course& course) {
   const bool peels_alone = p.branch(i).edge.peels() && course.may_go_out;
-  if (p.branch(i).edge.follows() || p.is_loaded(i) || !(course.may_turn || peels_alone)) return;
+  if (p.branch(i).edge.follows() || p.is_force_controlled(i) || !(course.may_turn || peels_alone)) return;
   const auto add = [&](int kind, int direction) {
     list_.push_back({.kind = kind,
                      .index = static_cast<int>(i),

@@ -53,8 +53,8 @@ inline constexpr double k_least_slope = 1e-3;
 /// that vanished there could not be located, because no state lies beyond. The remaining distance to the fold goes with
 /// the square of this stiffness.
 inline constexpr double k_least_centre_stiffness = 1e-5;
-/// Stiffness of a plastic contact under force, over that of a shallow one, at which the contact counts as bearing its
-/// largest force. Below this stiffness, the overlap would magnify errors of the radius a hundredfold and more.
+/// A plastic contact under a prescribed force has reached its largest force when its stiffness is this share of that of
+/// a shallow contact. Below this stiffness, the overlap would magnify errors of the radius a hundredfold and more.
 inline constexpr double k_last_stiffness = 1e-2;
 /// A wall this near to the centre of the particle (over R0) has reached it.
 inline constexpr double k_least_distance = 1e-3;

@@ -24,7 +24,7 @@ constexpr double k_passed = 1e-2;
 // contact, which is smaller than the stiffness of the unloading branch by many orders.
 constexpr double k_passed_by_force = 1e-6;
 // Change of an overlap at one instant (over R0) beyond which the free centre has jumped to another equilibrium.
-constexpr double k_spring = 1e-9;
+constexpr double k_jumped = 1e-9;
 
 /// Erases the events of contact i from the log, from index `from` on.
 void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
@@ -45,7 +45,7 @@ const PullOff& pull_off_of(const Particle& p, std::size_t i) {
 /// @return the warning if it does not
 std::optional<Diagnostic> check_adhesion(const Particle& p, std::size_t i) {
   const Material& material = p.law().material;
-  const Control control = p.is_loaded(i) ? Control::force : Control::displacement;
+  const Control control = p.is_force_controlled(i) ? Control::force : Control::displacement;
   const double critical = pull_off_of(p, i).under(control).contact_radius;
   const double peak = peak_radius_over_initial_radius(p.contact(i).displacement, material.yield_overlap_ratio);
   const double zone = plastic_zone_size(material.composite_modulus, p.law().surface_energy, material.yield_stress);
@@ -139,7 +139,7 @@ bool ModeSearch::let_go_of_pulling_walls(double xi, std::span<double> y, std::ve
   const CentreVector softest = centre_stiffness(p_).direction.normalized();
   bool any = false;
   for (std::size_t i = 0; i < p_.size(); ++i) {
-    if (!p_.is_loaded(i) || !p_.branch(i).touches() || !(p_.drive(i).value(xi) < 0.0)) continue;
+    if (!p_.is_force_controlled(i) || !p_.branch(i).touches() || !(p_.drive(i).value(xi) < 0.0)) continue;
     if (!(std::abs(p_.centre().direction(i).dot(softest)) > k_no_direction)) continue;
     separate(i, y, log);
     any = true;
@@ -176,7 +176,7 @@ bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
       // On a branch as short as the guard's tolerance, the guard fires far from the end of the branch: no reload there.
       if (branch.regime != Regime::unloading) return false;
       const double overlap = p_.contact(i).overlap;
-      const double passed = p_.is_loaded(i) ? k_passed_by_force : k_passed;
+      const double passed = p_.is_force_controlled(i) ? k_passed_by_force : k_passed;
       return unloading_fraction(branch.shape(p_.law(), p_.at().r, overlap), overlap) > passed;
     }
     default:
@@ -191,7 +191,7 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
   switch (guard.kind) {
     case k_yield:
       p_.set_branch(i, p_.branch(i).yielded(p_.law(), p_.at().r));
-      has_jumped_ = has_jumped_ || p_.is_loaded(i);
+      has_jumped_ = has_jumped_ || p_.is_force_controlled(i);
       break;
     case k_reload:
       p_.set_branch(i, p_.branch(i).reloaded());
@@ -333,7 +333,7 @@ bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log
   for (std::size_t i = 0; i < p_.size(); ++i) {
     const bool was_open = !p_.branch(i).touches();
     has_changed = resolve_contact(i, xi, y, now, log) || has_changed;
-    if (was_open && p_.is_loaded(i) && p_.branch(i).touches()) just_loaded.push_back(i);
+    if (was_open && p_.is_force_controlled(i) && p_.branch(i).touches()) just_loaded.push_back(i);
   }
   if (!has_changed) {
     // Several edges that peel at once may fail to hold the centre from the start: the guard of the centre's stiffness
@@ -375,7 +375,6 @@ void ModeSearch::accept(double xi, std::span<double> y) {
 
 /// True if the radius starts to grow, or goes on growing, at this instant.
 bool ModeSearch::wants_growth(double xi, std::span<double> y) {
-  if (!p_.setup().grows()) return false;
   p_.evaluated(xi, y);
   const Motion now = p_.motion(false);
   if (!gate_is_open(p_, now)) return false;
@@ -383,7 +382,7 @@ bool ModeSearch::wants_growth(double xi, std::span<double> y) {
   // The rate of a force-controlled contact is infinite at the instant at which it is made.
   bool is_singular = false;
   for (std::size_t i = 0; i < p_.size(); ++i) {
-    is_singular = is_singular || (p_.is_loaded(i) && p_.takes_part(i) && p_.drive(i).rate() > 0.0 &&
+    is_singular = is_singular || (p_.is_force_controlled(i) && p_.takes_part(i) && p_.drive(i).rate() > 0.0 &&
                                   !(p_.contact(i).contact.by_overlap > 0.0));
   }
   if (is_singular || std::abs(drive) <= k_zero_guard) {
@@ -434,7 +433,7 @@ void ModeSearch::balance_anew(double xi, std::span<double> y, std::vector<Event>
 /// Leads a contact along its branches to the overlap that the jump of a free centre gives it.
 /// @return whether its branch has changed
 bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log) {
-  if (p_.is_loaded(i)) return false;
+  if (p_.is_force_controlled(i)) return false;
   const double r = y[k_radius];
   const double jump = p_.contact(i).overlap - spring_.overlaps[i];
   // An earlier round may have closed, yielded or reloaded this contact, and a later round may lead it back. Such a
@@ -448,7 +447,7 @@ bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std:
     forget_events(i, spring_.logged, log);
     forget_events(i, spring_.made, made_);
   }
-  if (std::abs(jump) <= k_spring) return has_entered;
+  if (std::abs(jump) <= k_jumped) return has_entered;
   // A contact that unloads in the jump turns at the overlap that it had before.
   const bool turns = jump < 0.0 && p_.branch(i).touches() && p_.branch(i).edge.follows();
   if (turns) p_.evaluate_contact(i, spring_.overlaps[i] - r, r);
@@ -467,7 +466,7 @@ bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std:
 
 ModeSearch::Tendency ModeSearch::tendency(std::size_t i, double xi, const Motion& now) const {
   const ContactBranch& branch = p_.branch(i);
-  const bool is_loaded = p_.is_loaded(i);
+  const bool is_loaded = p_.is_force_controlled(i);
   const double of_wall = wall_rate(p_, i, now);
   const double of_overlap = overlap_rate(p_, i, now);
   Tendency result;
@@ -530,7 +529,7 @@ bool ModeSearch::resolve_elastic(std::size_t i, double xi, const Tendency& tends
   const bool idle = is_idle(p_, i);
   const bool is_past_opening = idle && tends.opens && contact_guard(p_, k_lost, i, xi, overlap) <= k_zero_guard;
   // A prescribed force that begins to pull before the contact has carried any load finds no edge that could stick.
-  const bool is_unborne = !idle && retreats && p_.is_loaded(i) && !tends.is_pressed && overlap < k_resolution;
+  const bool is_unborne = !idle && retreats && p_.is_force_controlled(i) && !tends.is_pressed && overlap < k_resolution;
   if (is_past_opening || is_unborne) {
     p_.lose(i);
     log.push_back(event_of("contact-lost", i));
@@ -567,7 +566,7 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
   }
   if (p_.law().adheres()) return resolve_edge(i, xi, y, now, tends.is_carried, log);
   // A contact that no force presses during the whole step may end at once; it does not wait for growth to open it.
-  const bool is_let_go = p_.is_loaded(i) && p_.drive(i).start() <= 0.0 && p_.drive(i).end() <= 0.0;
+  const bool is_let_go = p_.is_force_controlled(i) && p_.drive(i).start() <= 0.0 && p_.drive(i).end() <= 0.0;
   if ((tends.opens || is_let_go) && contact_guard(p_, k_lost, i, xi, overlap) <= k_zero_guard) {
     p_.lose(i);
     log.push_back(event_of("contact-lost", i));
@@ -606,7 +605,7 @@ bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, con
       return true;
     case Edge::peeling:
       // Beyond pull-off, where only displacement control could hold an edge, a constant force too makes it run away.
-      if (is_past(k_pull_off, -1.0) && (moves_out || p_.is_loaded(i))) {
+      if (is_past(k_pull_off, -1.0) && (moves_out || p_.is_force_controlled(i))) {
         separate(i, y, log);
         return true;
       }
@@ -637,7 +636,7 @@ void ModeSearch::stick(std::size_t i, std::vector<Event>& log) {
 /// Tears the springs at a sticking edge: the edge then recedes in equilibrium, or pulls off at once if it lies within
 /// the critical radius.
 void ModeSearch::start_peeling(std::size_t i, std::span<double> y, std::vector<Event>& log) {
-  const Control control = p_.is_loaded(i) ? Control::force : Control::displacement;
+  const Control control = p_.is_force_controlled(i) ? Control::force : Control::displacement;
   const std::optional<AdhesiveEdge> peeling = p_.branch(i).edge.torn(pull_off_of(p_, i).under(control));
   if (!peeling) {
     separate(i, y, log);
@@ -651,7 +650,7 @@ void ModeSearch::start_peeling(std::size_t i, std::span<double> y, std::vector<E
 void ModeSearch::separate(std::size_t i, std::span<double> y, std::vector<Event>& log) {
   const AdhesiveEdge& edge = p_.branch(i).edge;
   const bool is_touch = edge.sticks() && edge.radius == 0.0;
-  if (p_.is_loaded(i)) {
+  if (p_.is_force_controlled(i)) {
     const Instant& now = p_.contact(i);
     // y counts the work less force times displacement, a term that an open contact no longer has: adds it to keep the
     // work done so far. If the contact stores negative energy, the load has to supply at least that in the snap.
@@ -664,7 +663,7 @@ void ModeSearch::separate(std::size_t i, std::span<double> y, std::vector<Event>
   if (!p_.centre().is_free()) return;
   // A free centre springs away from the opened contact, which relieves the edges that peel elsewhere.
   for (std::size_t j = 0; j < p_.size(); ++j) {
-    if (p_.branch(j).edge.peels() && !p_.is_loaded(j)) stick(j, log);
+    if (p_.branch(j).edge.peels() && !p_.is_force_controlled(j)) stick(j, log);
   }
 }
 

@@ -1,5 +1,3 @@
-#include "mdr/model.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,8 +5,10 @@
 
 #include "elastic/hertz.hpp"
 #include "mdr/adhesion_map.hpp"
+#include "mdr/system.hpp"
 #include "stress/checks.hpp"
 #include "stress/draw.hpp"
+#include "system/model.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
@@ -114,8 +114,16 @@ std::shared_ptr<const PressureCurve> pressure_curve_of(const ModelInput& input) 
   return samples == nullptr ? nullptr : std::make_shared<const PressureCurve>(samples->x, samples->y);
 }
 
+Material material_of(const ModelInput& input) {
+  return make_material(input.material("youngs_modulus"), input.material("poisson_ratio"),
+                       input.material("yield_stress"), pressure_curve_of(input));
+}
+
 std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach) {
-  Settings settings = common_settings(input, reach);
+  Settings settings;
+  settings.initial_radius = input.radius;
+  settings.youngs_modulus = input.material("youngs_modulus");
+  settings.poisson_ratio = input.material("poisson_ratio");
   settings.yield_stress = input.material("yield_stress");
   settings.surface_energy = input.material("surface_energy");
   settings.radius_rule = input.choice<RadiusRule>(
@@ -126,6 +134,9 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
       "delta_max_rule", {{"running-maximum", DeltaMaxRule::running_maximum}, {"shifted", DeltaMaxRule::shifted}});
   settings.stops_at_cap_intersection = input.toggle("strict");
   settings.pressure_curve = pressure_curve_of(input);
+  settings.centre_is_free = input.centre_is_free;
+  settings.largest_displacement = reach.displacement;
+  settings.largest_force = reach.force;
   return std::make_unique<System>(settings, std::move(classes));
 }
 
@@ -165,24 +176,6 @@ void check(const CheckedRun& run, std::vector<Violation>& found) {
   check_growth(run, "apparent_radius", (most_fall_at_yield(run) + run.tolerance) * run.input.radius, found);
 }
 
-}  // namespace
-
-Settings common_settings(const ModelInput& input, const Reach& reach) {
-  Settings settings;
-  settings.largest_displacement = reach.displacement;
-  settings.largest_force = reach.force;
-  settings.initial_radius = input.radius;
-  settings.youngs_modulus = input.material("youngs_modulus");
-  settings.poisson_ratio = input.material("poisson_ratio");
-  settings.centre_is_free = input.centre_is_free;
-  return settings;
-}
-
-Material material_of(const ModelInput& input) {
-  return make_material(input.material("youngs_modulus"), input.material("poisson_ratio"),
-                       input.optional_material("yield_stress").value_or(k_infinity), pressure_curve_of(input));
-}
-
 std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {
   const double youngs_modulus = input.material("youngs_modulus");
   const double poisson_ratio = input.material("poisson_ratio");
@@ -193,7 +186,6 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
                                      {"composite_modulus", material.composite_modulus, "Pa"},
                                      {"shear_modulus", youngs_modulus / (2.0 * (1.0 + poisson_ratio)), "Pa"},
                                      {"bulk_compliance", material.bulk_compliance, "1/Pa"}};
-  if (!std::isfinite(yield_stress)) return list;
   list.push_back({"yield_stress", yield_stress, "Pa"});
   list.push_back({"modulus_over_yield", youngs_modulus / yield_stress, "-"});
   if (material.pressure_curve) list.push_back({"pressure_table_end", material.pressure_curve->end(), "-"});
@@ -209,16 +201,18 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
   return list;
 }
 
+/// Largest displacement and force of a contact that meets a condition for the first time, as estimated from the softer
+/// of the elastic and the plastic law, which goes farther in and bears less. For a pressure or a contact radius the
+/// displacement is that of the elastic law. Infinite where nothing is known.
 Reach reach(const ModelInput& input, const Until& until) {
   const double radius = input.radius;
   const Material law = material_of(input);
-  const bool yields = std::isfinite(law.yield_stress);
   const double modulus = law.composite_modulus;
   const double circumference = 2.0 * std::numbers::pi * radius;
   const auto up_to_radius = [&](double contact_radius) { return contact_radius * contact_radius / radius; };
   Reach reach{.displacement = k_infinity, .force = k_infinity};
   if (until.is_of(Quantity::force)) {
-    const double plastic = yields ? until.value / (circumference * law.yield_stress) : 0.0;
+    const double plastic = until.value / (circumference * law.yield_stress);
     const double elastic = elastic_overlap(ElasticProfile::parabola, modulus, radius, until.value);
     return {.displacement = std::max(elastic, plastic), .force = until.value};
   }
@@ -228,14 +222,15 @@ Reach reach(const ModelInput& input, const Until& until) {
     const double elastic = up_to_radius(0.75 * std::numbers::pi * radius * until.value / modulus);
     if (elastic < law.yield_overlap_ratio * radius) reach.displacement = elastic;
   }
-  if (until.event == "yield" && yields) reach.displacement = law.yield_overlap_ratio * radius;
+  if (until.event == "yield") reach.displacement = law.yield_overlap_ratio * radius;
   if (reach.displacement < radius) {
-    const double plastic =
-        yields ? plastic_pressure(law, 0.0).pressure * circumference * reach.displacement : k_infinity;
+    const double plastic = plastic_pressure(law, 0.0).pressure * circumference * reach.displacement;
     reach.force = std::min(hertz_force(modulus, radius, reach.displacement), plastic);
   }
   return reach;
 }
+
+}  // namespace
 
 Model model() noexcept {
   return {.name = "mdr",

@@ -19,10 +19,6 @@ constexpr std::array<std::string_view, 7> k_regime_words{"open",      "elastic",
 constexpr double k_adhering_word = 5.0;
 constexpr double k_peeling_word = 6.0;
 
-std::span<const std::string_view> regime_words(const Setup& setup) {
-  return std::span(k_regime_words).first(std::isfinite(setup.settings.yield_stress) ? k_regime_words.size() : 2);
-}
-
 double regime_word(const ContactBranch& branch) noexcept {
   if (branch.edge.sticks()) return k_adhering_word;
   return branch.edge.peels() ? k_peeling_word : static_cast<double>(branch.regime);
@@ -33,11 +29,11 @@ double regime_word(const ContactBranch& branch) noexcept {
 System::System(std::shared_ptr<const Setup> setup)
     : setup_(std::move(setup)),
       unknowns_(setup_->unknowns()),
-      columns_(true, true, regime_words(*setup_), setup_->classes, setup_->settings.centre_is_free),
+      columns_(true, true, k_regime_words, setup_->classes, setup_->settings.centre_is_free),
       now_{.particle = Particle(setup_), .caps = ContactCaps(*setup_)},
       search_(now_.particle),
       trial_(unknowns_.size()) {
-  if (setup_->grows()) observables_ = {{"apparent_radius", "m", {}}, {"volume", "m3", {}}};
+  observables_ = {{"apparent_radius", "m", {}}, {"volume", "m3", {}}};
   observables_.insert(observables_.end(), columns_.observables().begin(), columns_.observables().end());
 }
 
@@ -45,11 +41,9 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   const Evaluation& at = now_.particle.evaluated(xi, y);
   const double length = setup_->length_unit();
   const double force_unit = setup_->force_unit();
-  if (setup_->grows()) {
-    values[0] = (1.0 + at.r) * length;
-    values[1] = 4.0 * pi / 3.0 * length * length * length * at.volume.volume_ratio();
-    values = values.subspan(2);
-  }
+  values[0] = (1.0 + at.r) * length;
+  values[1] = 4.0 * pi / 3.0 * length * length * length * at.volume.volume_ratio();
+  values = values.subspan(2);
   const auto row_of = [&](std::size_t i) -> contacts::VisibleContact {
     const Contact& c = visible_contact(i);
     const double area = pi * c.contact_radius * c.contact_radius;
@@ -57,7 +51,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
             .overlap = at.contacts[i].overlap * length,
             .force = c.force * force_unit,
             .contact_radius = c.contact_radius * length,
-            .pressure = area > 0.0 ? c.force / area * setup_->stress_unit : 0.0,
+            .pressure = area > 0.0 ? c.force / area * setup_->stress_unit() : 0.0,
             .regime = regime_word(now_.particle.branch(i))};
   };
   contacts::Energies energies = contacts::k_no_energies;
@@ -88,9 +82,9 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
   const Contact& contact = visible_contact(i);
   const double length = setup_->length_unit();
   const double area = pi * contact.contact_radius * contact.contact_radius;
-  return quantity_of({.force = contact.force * setup_->stress_unit * length * length,
+  return quantity_of({.force = contact.force * setup_->stress_unit() * length * length,
                       .displacement = now_.particle.contact(i).position * length,
-                      .pressure = area > 0.0 ? contact.force / area * setup_->stress_unit : 0.0,
+                      .pressure = area > 0.0 ? contact.force / area * setup_->stress_unit() : 0.0,
                       .contact_radius = contact.contact_radius * length,
                       .apparent_radius = (1.0 + y[k_radius]) * length},
                      quantity);
@@ -109,7 +103,7 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
                                                  .displacement_1d = now.displacement});
   for (SurfacePoint& point : points) {
     point.radius *= setup_->length_unit();
-    point.pressure *= setup_->stress_unit;
+    point.pressure *= setup_->stress_unit();
     point.displacement *= setup_->length_unit();
     point.relaxed_height *= setup_->length_unit();
   }
@@ -124,14 +118,12 @@ double System::controlled(Control control, int contact_class, double xi, std::sp
 
 std::vector<Diagnostic> System::warnings() const {
   std::vector<Diagnostic> result;
-  if (setup_->grows()) {
-    const double ratio = setup_->settings.youngs_modulus / setup_->settings.yield_stress;
-    if (!std::isfinite(setup_->law.material.yield_overlap_ratio)) {
-      result.push_back(
-          {"the material is too compliant to yield inside the model; the particle stays elastic", "E/Y", ratio});
-    } else if (ratio < 10.0) {
-      result.push_back({"elastic strains are not small: the model is meant for E/Y of 10 and more", "E/Y", ratio});
-    }
+  const double ratio = setup_->settings.youngs_modulus / setup_->settings.yield_stress;
+  if (!std::isfinite(setup_->law.material.yield_overlap_ratio)) {
+    result.push_back(
+        {"the material is too compliant to yield inside the model; the particle stays elastic", "E/Y", ratio});
+  } else if (ratio < 10.0) {
+    result.push_back({"elastic strains are not small: the model is meant for E/Y of 10 and more", "E/Y", ratio});
   }
   if (now_.caps.first_radius()) {
     result.push_back({"contact caps intersect (event caps-intersect); the model is not valid beyond", "first at R/R0",

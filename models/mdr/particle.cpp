@@ -71,9 +71,9 @@ const Evaluation& Particle::evaluate_forces(double xi, std::span<const double> y
   for (int k = 0; k < centre().count(); ++k) at_.longest = std::max(at_.longest, std::abs(y[centre_index(k)]));
   for (std::size_t i = 0; i < size(); ++i) {
     const double carried = centre().moved_towards(i, y.subspan(k_centre));
-    const double wall = is_loaded(i) ? y[setup_->wall_index[i]] : walls_.position(i, xi);
-    at_.contacts[i].position = is_loaded(i) ? wall - carried : wall;
-    evaluate_contact(i, is_loaded(i) ? wall : wall + carried, at_.r);
+    const double wall = is_force_controlled(i) ? y[setup_->wall_index[i]] : walls_.position(i, xi);
+    at_.contacts[i].position = is_force_controlled(i) ? wall - carried : wall;
+    evaluate_contact(i, is_force_controlled(i) ? wall : wall + carried, at_.r);
   }
   sum_up(xi);
   return at_;
@@ -111,7 +111,7 @@ double Particle::force_work(std::span<const double> y) {
   at_xi_ = k_nan;
   double sum = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
-    if (!is_loaded(i)) continue;
+    if (!is_force_controlled(i)) continue;
     evaluate_contact(i, y[setup_->wall_index[i]], y[k_radius]);
     const double position = contact(i).displacement - centre().moved_towards(i, y.subspan(k_centre));
     sum += count(i) * contact(i).contact.force * position;
@@ -138,7 +138,7 @@ void Particle::sum_up(double xi) {
   double force_work = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     Instant& now = at_.contacts[i];
-    const bool is_under_force = is_loaded(i);
+    const bool is_under_force = is_force_controlled(i);
     const double speed = drive(i).rate();
     now.rate_by_time = is_under_force ? 0.0 : speed;
     now.rate_by_growth = 0.0;
@@ -171,9 +171,9 @@ void Particle::load_centre(std::size_t i) {
   CentreLoad load{.count = count(i)};
   if (!is_slight(i)) {
     load.force = c.force;
-    load.force_by_time = is_loaded(i) ? speed : stiffness * speed;
+    load.force_by_time = is_force_controlled(i) ? speed : stiffness * speed;
   }
-  if (!is_loaded(i)) {
+  if (!is_force_controlled(i)) {
     double by_radius = c.by_radius;
     if (branch.regime == Regime::unloading && branch.edge.follows() && c.by_overlap < stiffness) {
       // The overlap at which a dent begins changes with the radius, even if the contact there bears next to nothing.

@@ -80,7 +80,7 @@ class Particle {
   void set_drives(std::span<const Ramp> ramps);
   [[nodiscard]] const Walls& walls() const noexcept { return walls_; }
   [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return walls_.drive(i); }
-  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return walls_.is_loaded(i); }
+  [[nodiscard]] bool is_force_controlled(std::size_t i) const noexcept { return walls_.is_force_controlled(i); }
 
   // Branches and mode.
 

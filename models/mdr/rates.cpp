@@ -23,18 +23,18 @@ double loaded_rate(const Particle& p, double loading, double by_radius, double g
 }  // namespace
 
 double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  const double carried = p.is_loaded(i) ? 0.0 : p.centre().direction(i).dot(motion.centre);
+  const double carried = p.is_force_controlled(i) ? 0.0 : p.centre().direction(i).dot(motion.centre);
   return p.contact(i).rate_by_time + p.contact(i).rate_by_growth * motion.growth + carried;
 }
 
 double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  if (!p.is_loaded(i)) return inward_rate(p, i, motion) / p.walls().speed_scale();
+  if (!p.is_force_controlled(i)) return inward_rate(p, i, motion) / p.walls().speed_scale();
   const Contact& c = p.contact(i).contact;
   return loaded_rate(p, p.drive(i).rate(), c.by_overlap + c.by_radius, motion.growth);
 }
 
 double overlap_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  if (!p.is_loaded(i)) return (inward_rate(p, i, motion) + motion.growth) / p.walls().speed_scale();
+  if (!p.is_force_controlled(i)) return (inward_rate(p, i, motion) + motion.growth) / p.walls().speed_scale();
   return loaded_rate(p, p.drive(i).rate(), p.contact(i).contact.by_radius, motion.growth);
 }
 
@@ -47,11 +47,12 @@ double edge_rate(const Particle& p, std::size_t i, const Motion& motion) {
   double overlap_speed = inward_rate(p, i, motion) + motion.growth;
   // The rate of a force-controlled contact that is just being made has no bound: the sign of the force's rate decides,
   // however small that is, and growth does not count.
-  const bool is_being_made = p.is_loaded(i) && !(now.contact.by_overlap > 0.0);
+  const bool is_being_made = p.is_force_controlled(i) && !(now.contact.by_overlap > 0.0);
   if (is_being_made) overlap_speed = p.drive(i).rate();
   if (is_being_made || motion.growth == 0.0) {
     // If a free centre keeps up with the wall, the difference of their speeds is round-off, of either sign.
-    const double round_off = p.is_loaded(i) ? 0.0 : k_zero_guard * (std::abs(now.rate_by_time) + motion.centre.norm());
+    const double round_off =
+        p.is_force_controlled(i) ? 0.0 : k_zero_guard * (std::abs(now.rate_by_time) + motion.centre.norm());
     return overlap_speed > round_off ? 1.0 : overlap_speed < -round_off ? -1.0 : 0.0;
   }
   return p.branch(i).press_rate(p.law(), p.at().r, now.overlap, now.contact.contact_radius, overlap_speed,
@@ -84,7 +85,7 @@ bool gate_is_open(const Particle& p, const Motion& motion) {
     // Next to stiff contacts the rate of an idle contact loses digits.
     const GrowthDrive drive{.inward_rate = inward_rate(p, i, motion),
                             .least_rate = (is_idle(p, i) ? k_at_rest : k_zero_guard) * p.walls().speed_scale(),
-                            .is_force_controlled = p.is_loaded(i),
+                            .is_force_controlled = p.is_force_controlled(i),
                             .rises = p.drive(i).rate() > 0.0,
                             .is_on_primary_branch = p.branch(i).is_on_primary_branch};
     if (opens_gate(p.setup().settings.radius_rule, drive)) return true;
@@ -107,7 +108,7 @@ double growth_drive(const Particle& p, const Motion& motion) noexcept {
 }
 
 bool has_greatest_force(const Particle& p, std::size_t i) noexcept {
-  return p.is_loaded(i) && p.branch(i).regime == Regime::fully_plastic;
+  return p.is_force_controlled(i) && p.branch(i).regime == Regime::fully_plastic;
 }
 
 double stiffness_left(const Particle& p, std::size_t i) noexcept {

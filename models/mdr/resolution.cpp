@@ -22,7 +22,7 @@ double resolution(const Particle& p) {
 }
 
 bool is_idle(const Particle& p, std::size_t i) {
-  if (!p.centre().acts(i) || p.is_loaded(i)) return false;
+  if (!p.centre().acts(i) || p.is_force_controlled(i)) return false;
   const ContactBranch& branch = p.branch(i);
   const bool may_be_idle = branch.regime == Regime::elastic ? branch.is_on_primary_branch || !p.law().adheres()
                                                             : branch.regime == Regime::unloading && !p.law().adheres();

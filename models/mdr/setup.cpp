@@ -8,11 +8,8 @@
 #include "elastic/hertz.hpp"
 
 namespace monograin::mdr {
-namespace {
 
 using std::numbers::pi;
-
-}  // namespace
 
 CentreVector centre_of(std::span<const double> y, int free_count) noexcept {
   CentreVector centre = CentreVector::Zero();
@@ -28,11 +25,10 @@ Setup::Setup(const Settings& given, std::vector<ContactClass> contact_classes)
     : settings(given), classes(std::move(contact_classes)), centre(classes, settings.centre_is_free) {
   law.material =
       make_material(settings.youngs_modulus, settings.poisson_ratio, settings.yield_stress, settings.pressure_curve);
-  stress_unit = std::isfinite(settings.yield_stress) ? settings.yield_stress : law.material.composite_modulus;
-  law.material.composite_modulus /= stress_unit;
-  law.material.yield_stress /= stress_unit;
-  law.material.bulk_compliance *= stress_unit;
-  law.surface_energy = settings.surface_energy / (stress_unit * settings.initial_radius);
+  law.material.composite_modulus /= stress_unit();
+  law.material.yield_stress /= stress_unit();
+  law.material.bulk_compliance *= stress_unit();
+  law.surface_energy = settings.surface_energy / (stress_unit() * settings.initial_radius);
   law.elastic_profile = settings.elastic_profile;
   law.delta_max_rule = settings.delta_max_rule;
   law.continues_off_branch = centre.is_free();
@@ -64,7 +60,7 @@ std::vector<Unknown> Setup::unknowns() const {
 /// A program may prescribe any displacement, but a contact ends where its wall has reached the centre.
 double Setup::largest_overlap_expected() const {
   double reach = std::min(1.0, settings.largest_displacement / settings.initial_radius);
-  const double force = settings.largest_force / (stress_unit * settings.initial_radius * settings.initial_radius);
+  const double force = settings.largest_force / force_unit();
   if (force > 0.0) {
     const double elastic = elastic_overlap(ElasticProfile::parabola, law.material.composite_modulus, 1.0, force);
     const double plastic = std::isfinite(law.material.yield_overlap_ratio) ? force / (2.0 * pi) : 0.0;

@@ -3,7 +3,7 @@
 /// Unknowns: r = (R - R0)/R0, the work of the walls, the displacement of a free centre along the directions in which
 /// walls can move it, and the displacement of every wall whose force is prescribed at some time. Where a force is
 /// prescribed, the unknown is the work less force times displacement, -int delta_o dF: unlike int F d(delta_o), this
-/// has no singularity where a contact is made or snaps off. Lengths in R0; stresses in Y (in E* if Y is infinite).
+/// has no singularity where a contact is made or snaps off. Lengths in R0; stresses in Y.
 #pragma once
 
 #include <algorithm>
@@ -20,15 +20,12 @@
 
 namespace monograin::mdr {
 
-/// Share of the forces on a free centre that is round-off in their balance.
-inline constexpr double k_no_force = 1e-9;
-
 struct Settings {
-  double initial_radius = 0.0;       ///< R0 [m], > 0
-  double youngs_modulus = 0.0;       ///< E [Pa], > 0
-  double poisson_ratio = 0.0;        ///< in (-1, 0.5]
-  double yield_stress = k_infinity;  ///< Y [Pa], > 0; infinity: elastic throughout
-  double surface_energy = 0.0;       ///< dg of the particle-wall contact [J/m2], >= 0
+  double initial_radius = 0.0;  ///< R0 [m], > 0
+  double youngs_modulus = 0.0;  ///< E [Pa], > 0
+  double poisson_ratio = 0.0;   ///< in (-1, 0.5]
+  double yield_stress = 0.0;    ///< Y [Pa], > 0
+  double surface_energy = 0.0;  ///< dg of the particle-wall contact [J/m2], >= 0
   ElasticProfile elastic_profile = ElasticProfile::ellipse;
   RadiusRule radius_rule = RadiusRule::yielded;
   DeltaMaxRule delta_max_rule = DeltaMaxRule::running_maximum;
@@ -55,8 +52,7 @@ struct Setup {
   Setup(const Settings& given, std::vector<ContactClass> contact_classes);
 
   Settings settings;
-  ContactLaw law;            ///< stresses over the stress unit, lengths over R0
-  double stress_unit = 1.0;  ///< [Pa]
+  ContactLaw law;  ///< stresses over Y, lengths over R0
   std::vector<ContactClass> classes;
   std::vector<double> counts;           ///< walls of each class
   bool takes_forces = false;            ///< whether any class is ever under force control
@@ -64,8 +60,8 @@ struct Setup {
   std::vector<std::size_t> wall_index;  ///< index in y of the displacement of each class that takes a force; else 0
 
   [[nodiscard]] double length_unit() const noexcept { return settings.initial_radius; }
-  [[nodiscard]] double force_unit() const noexcept { return stress_unit * length_unit() * length_unit(); }
-  [[nodiscard]] bool grows() const noexcept { return settings.radius_rule != RadiusRule::fixed; }
+  [[nodiscard]] double stress_unit() const noexcept { return settings.yield_stress; }
+  [[nodiscard]] double force_unit() const noexcept { return stress_unit() * length_unit() * length_unit(); }
   [[nodiscard]] std::vector<Unknown> unknowns() const;
   [[nodiscard]] std::size_t unknown_count() const noexcept {
     return centre_index(centre.count()) +

@@ -98,7 +98,7 @@ bool may_be_supported(const Particle& p, std::size_t i) {
   std::vector<CentreVector> others;
   for (std::size_t j = 0; j < p.size(); ++j) {
     if (j == i || !p.centre().acts(j)) continue;
-    if (!p.branch(j).touches() && (p.is_loaded(j) || distance_to_touch(p, j) > k_together)) continue;
+    if (!p.branch(j).touches() && (p.is_force_controlled(j) || distance_to_touch(p, j) > k_together)) continue;
     others.push_back(p.centre().direction(j).normalized());
   }
   return in_reaction_cone(p.centre().direction(i), others);
@@ -110,7 +110,7 @@ std::optional<std::size_t> nearest_partner(const Particle& p, std::size_t i, boo
   std::optional<std::size_t> next;
   double nearest = k_together;
   for (std::size_t j = 0; j < p.size(); ++j) {
-    if (j == i || p.is_loaded(j) || !p.centre().acts(j) || p.branch(j).touches() == is_made) continue;
+    if (j == i || p.is_force_controlled(j) || !p.centre().acts(j) || p.branch(j).touches() == is_made) continue;
     const double distance =
         is_made ? distance_to_touch(p, j) : std::abs(contact_guard(p, k_lost, j, 0.0, p.contact(j).overlap));
     if (distance > nearest || (!is_made && is_supported(p, j))) continue;
@@ -125,11 +125,11 @@ std::optional<std::size_t> nearest_partner(const Particle& p, std::size_t i, boo
 bool idle_contacts_have_to_bear(const Particle& p, double xi) {
   std::vector<CentreVector> bearing;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.branch(i).touches() || p.is_loaded(i) || is_idle(p, i) || !p.centre().acts(i)) continue;
+    if (!p.branch(i).touches() || p.is_force_controlled(i) || is_idle(p, i) || !p.centre().acts(i)) continue;
     bearing.push_back(p.centre().direction(i).normalized());
     if (!p.branch(i).edge.follows()) bearing.emplace_back(-p.centre().direction(i).normalized());
   }
-  const double least = k_no_force * largest_prescribed_force(p);
+  const double least = k_no_net_force * largest_prescribed_force(p);
   const auto is_borne = [&](const CentreVector& push) {
     return push.norm() <= least || in_reaction_cone(push, bearing);
   };
@@ -166,7 +166,7 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
   for (const IdleWall& wall : walls) p.lose(wall.contact);
   const CentreMatrix along = unconstrained_directions(p);
   p.set_branches(before);
-  const double least = k_no_force * largest_prescribed_force(p);
+  const double least = k_no_net_force * largest_prescribed_force(p);
   const CentreVector push = along * prescribed_push(p, 1.0);
   if (push.norm() <= least) return false;
   // Holds only where forces begin, at the start of a step: after any force, walls may have caught up with the centre.
@@ -213,13 +213,13 @@ bool is_supported(const Particle& p, std::size_t i, double side, std::vector<Cen
 }
 
 CentreMatrix unconstrained_directions(Particle& p) {
-  return p.centre().unconstrained([&](std::size_t i) { return p.branch(i).touches() && !p.is_loaded(i); });
+  return p.centre().unconstrained([&](std::size_t i) { return p.branch(i).touches() && !p.is_force_controlled(i); });
 }
 
 CentreVector prescribed_push(const Particle& p, double xi) noexcept {
   CentreVector sum = CentreVector::Zero();
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.is_loaded(i) || !p.branch(i).touches()) continue;
+    if (!p.is_force_controlled(i) || !p.branch(i).touches()) continue;
     sum += p.count(i) * p.drive(i).value(xi) * p.centre().direction(i);
   }
   return sum;
@@ -228,7 +228,7 @@ CentreVector prescribed_push(const Particle& p, double xi) noexcept {
 double largest_prescribed_force(const Particle& p) noexcept {
   double largest = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.branch(i).touches() && p.is_loaded(i)) largest = std::max(largest, p.count(i) * p.drive(i).size());
+    if (p.branch(i).touches() && p.is_force_controlled(i)) largest = std::max(largest, p.count(i) * p.drive(i).size());
   }
   return largest;
 }
@@ -240,7 +240,7 @@ void check_support(Particle& p) {
   const CentreMatrix unconstrained = unconstrained_directions(p);
   const double left =
       std::max((unconstrained * prescribed_push(p, 0.0)).norm(), (unconstrained * prescribed_push(p, 1.0)).norm());
-  if (left > std::max(k_no_force * largest, p.force_round_off())) throw DomainError(Limit::centre_driven_away);
+  if (left > std::max(k_no_net_force * largest, p.force_round_off())) throw DomainError(Limit::centre_driven_away);
 }
 
 void carry_to_support(Particle& p, double xi, std::span<double> y, std::vector<Event>& log) {
@@ -248,7 +248,7 @@ void carry_to_support(Particle& p, double xi, std::span<double> y, std::vector<E
   move_walls(p, xi, y);
   p.evaluate(xi, y);
   const CentreVector push = prescribed_push(p, 1.0);
-  if (push.norm() <= k_no_force * largest_prescribed_force(p)) return;
+  if (push.norm() <= k_no_net_force * largest_prescribed_force(p)) return;
   const double round_off = p.force_round_off();
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.branch(i).touches() && std::abs(p.contact(i).contact.force) > round_off) return;
@@ -256,7 +256,7 @@ void carry_to_support(Particle& p, double xi, std::span<double> y, std::vector<E
   std::vector<contacts::Obstacle> walls;
   std::vector<char> touched;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.is_loaded(i) || !p.centre().acts(i)) continue;
+    if (p.is_force_controlled(i) || !p.centre().acts(i)) continue;
     const ContactBranch& branch = p.branch(i);
     walls.push_back({i, p.centre().direction(i), p.contact(i).overlap - branch.touching_overlap(p.law(), p.at().r)});
     touched.push_back(branch.touches());

@@ -59,7 +59,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   now_.particle.set_drives(ramps);
   for (std::size_t i = 0; i < now_.particle.size(); ++i) {
     ContactBranch branch = now_.particle.branch(i);
-    const bool is_loaded = now_.particle.is_loaded(i);
+    const bool is_loaded = now_.particle.is_force_controlled(i);
     if (is_loaded) branch.resting = y[setup_->wall_index[i]];
     // A driven wall that touches the fresh particle and approaches is in contact from the start, without an event.
     const bool touches_at_once = is_loaded ? setup_->classes[i].gap == 0.0 : now_.particle.drive(i).start() == 0.0;
@@ -74,7 +74,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
     for (std::size_t i = 0; i < now_.particle.size(); ++i) {
       // A contact that touches already fires no guard when a force begins to press it: the nearest walls close here.
       const contacts::WallDrive& drive = now_.particle.drive(i);
-      const bool begins_to_press = now_.particle.is_loaded(i) && drive.start() == 0.0 && drive.end() > 0.0;
+      const bool begins_to_press = now_.particle.is_force_controlled(i) && drive.start() == 0.0 && drive.end() > 0.0;
       if (begins_to_press && search_.particle().branch(i).touches()) search_.close_with(i, 0.0, y, log);
     }
     search_.resolve(0.0, y, log);
@@ -89,7 +89,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
 void System::stick_under_force(std::span<const double> y, std::vector<Event>& log) {
   Particle& p = now_.particle;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!p.is_loaded(i) || !p.branch(i).edge.peels()) continue;
+    if (!p.is_force_controlled(i) || !p.branch(i).edge.peels()) continue;
     const Instant& now = p.evaluate(0.0, y).contacts[i];
     const Indenter indenter = p.branch(i).frame(p.law(), y[k_radius], now.overlap).indenter;
     const double critical = p.branch(i).pull_off(p.law(), indenter).by_force.contact_radius;
@@ -115,8 +115,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       if (!end && !are_marks) search_.resolve(xi, y, log);
     });
   } catch (const std::domain_error&) {
-    // If contacts no longer hold the centre under a tension that no others bear, the walls that pull let go, as from a
-    // fixed centre: the program has no place for a particle that leaves with a wall.
+    // There is no equilibrium with the walls that pull, so they let go, as from a fixed centre. A particle that leaves
+    // with a wall is not part of the model.
     if (std::erase_if(fired_, [](const Guard& guard) { return guard.kind == k_unstable; }) == 0) throw;
     log.resize(logged);
     now_.validity = validity;

@@ -15,7 +15,7 @@ class Walls {
 
   void set_drives(const Setup& setup, std::span<const Ramp> ramps);
   [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return walls_[i].drive; }
-  [[nodiscard]] bool is_loaded(std::size_t i) const noexcept { return walls_[i].drive.is_force_controlled(); }
+  [[nodiscard]] bool is_force_controlled(std::size_t i) const noexcept { return walls_[i].drive.is_force_controlled(); }
   /// Largest rate of a wall under displacement control; 1 where none moves.
   [[nodiscard]] double speed_scale() const noexcept;
   /// Prescribed displacement of a wall towards the initial position of the centre.

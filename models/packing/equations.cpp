@@ -9,8 +9,8 @@ namespace monograin::packing {
 namespace {
 
 constexpr int k_iterations = 60;
-constexpr double k_resolution = 1e-14;  // step of Newton's method after which the next one is below round-off
-constexpr double k_noise = 1e-11;       // smaller steps may be round-off
+constexpr double k_last_step = 1e-14;  // step of Newton's method after which the next one is below round-off
+constexpr double k_noise = 1e-11;      // smaller steps may be round-off
 
 }  // namespace
 
@@ -90,7 +90,7 @@ std::optional<IntegratedState> Equations::nearest(IntegratedState y) const {
     // Corrections that no longer shrink are round-off.
     const bool is_round_off = step < k_noise && step > 0.5 * last;
     last = step;
-    if (step <= k_resolution || is_round_off) return y;
+    if (step <= k_last_step || is_round_off) return y;
   }
   return std::nullopt;
 }

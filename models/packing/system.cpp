@@ -71,8 +71,8 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   if (!is_jammed()) at_rest_ = y[k_fraction];
   const Mode before = mode_;
   resolve_mode(log);
-  // An integrated state goes on. Elsewhere the law gives the state, also for a packing that jams beyond its closed
-  // start, and for one that stands where the controlled quantity falls at first and moves on to where it grows.
+  // An integrated state is kept. In all other cases the law gives the state: beyond the closed start of a jammed
+  // branch, and where the controlled quantity falls at first.
   const bool goes_on = mode_ == before && !(mode_ == Mode::jammed && y[k_fraction] < branch_.range().begin);
   if (!goes_on) {
     if (is_jammed()) branch_.require_state(ramp_.value(0.0));

@@ -51,7 +51,7 @@ class CentreMode {
       return c.touches() ? d : std::min(d + carried(i, y), opening);
     }
     const double overlap = d + carried(i, y) - opening;
-    const bool only_touches = c.touches() && std::abs(overlap) <= FreeCentre::k_resolution;
+    const bool only_touches = c.touches() && std::abs(overlap) <= FreeCentre::k_bearing_overlap;
     return only_touches ? opening : opening + overlap;
   }
   /// Writes the position of the centre that balances the forces.

@@ -16,8 +16,6 @@ constexpr double k_near = 1e-5;
 // Determinant of the stiffness, over the cube of its largest diagonal element, above which the stiffnesses in all
 // directions are comparable.
 constexpr double k_comparable = 1e-3;
-// Share of the prescribed forces that may stay unbalanced along directions in which no contact bears.
-constexpr double k_cancelled = 1e-9;
 constexpr int k_most_steps = 200;
 // The line search ends where the slope of the energy along the step has at most this share of its initial magnitude.
 // The full step is also taken if the energy still falls faster at its end.
@@ -145,8 +143,8 @@ double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role>
   return middle;
 }
 
-/// Gives contacts that bear less than a force the stiffness that they have under it: at first touch they have none.
-/// Contacts beyond the end of their branch, where their force may be constant, get what they bear over their overlap.
+/// Raises the stiffness of contacts that bear less than a force to their stiffness under it: at first touch they have
+/// none. Contacts beyond the end of their branch, where the force may be constant, get their secant stiffness.
 void FreeCentre::lend_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force) {
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0)) continue;
@@ -179,7 +177,7 @@ FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const
     } else {
       const Matrix basis = stiffest_directions();
       borne = basis * (basis.transpose() * net);
-      if (const Vector left = net - borne; left.norm() > std::max(round_off_, k_cancelled * prescribed_)) {
+      if (const Vector left = net - borne; left.norm() > std::max(round_off_, k_no_net_force * prescribed_)) {
         c += flight(walls, roles, left, c);
         sum_up(walls, roles, c);
         continue;
@@ -200,7 +198,7 @@ FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const
 /// True if, at the end of the last search, contacts bear in all directions and none of them is below resolution.
 bool FreeCentre::is_held() const noexcept {
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    if (forces_[i] > 0.0 && !(forces_[i] > round_off_ && overlaps_[i] > k_resolution)) return false;
+    if (forces_[i] > 0.0 && !(forces_[i] > round_off_ && overlaps_[i] > k_bearing_overlap)) return false;
   }
   return is_held_;
 }
@@ -248,7 +246,7 @@ double FreeCentre::across_held(std::size_t i) const {
 FreeCentre::Vector FreeCentre::with_loose_directions(const CentreWalls& walls, std::span<const Role> roles,
                                                      const Vector& rest, const Vector& balanced,
                                                      std::optional<std::size_t> left_out) {
-  for (const double least_overlap : {k_resolution, 0.0}) {
+  for (const double least_overlap : {k_bearing_overlap, 0.0}) {
     held_directions_ = held_directions(walls, least_overlap);
     if (dimension() == 0 || held_directions_.col(dimension() - 1).squaredNorm() > 0.0) return balanced;
     Vector c = rest + held_directions_ * (held_directions_.transpose() * (balanced - rest));
@@ -275,7 +273,7 @@ void FreeCentre::find_roles(const CentreWalls& now, const CentreWalls& then, Vec
   std::ranges::fill(roles, Role::bearing);
   c = with_loose_directions(then, roles, rest, balance(then, roles, rest), std::nullopt);
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    const bool bears_now = !now.prescribed_force(i) && now.overlap(i) + lines_.arm(i).dot(rest) > k_resolution;
+    const bool bears_now = !now.prescribed_force(i) && now.overlap(i) + lines_.arm(i).dot(rest) > k_bearing_overlap;
     if (bears_now || bears_[i] || across_held(i) <= k_no_direction) continue;
     const bool is_near = then.prescribed_force(i) || then.overlap(i) + lines_.arm(i).dot(c) > -k_near;
     roles[i] = is_near ? Role::idle : Role::away;

@@ -55,7 +55,7 @@ class FreeCentre {
  public:
   using Vector = CentreLines::Vector;
   /// Smallest overlap (over R0) of a contact that bears; below, the contact only touches.
-  static constexpr double k_resolution = 1e-13;
+  static constexpr double k_bearing_overlap = 1e-13;
   explicit FreeCentre(std::span<const ContactClass> classes);
 
   [[nodiscard]] int dimension() const noexcept { return lines_.dimension(); }

@@ -88,7 +88,6 @@ TEST(MdrRadiusRule, SaysWhichContactsTakePart) {
     EXPECT_EQ(takes_part(RadiusRule::gated, regime), touches(regime));
     EXPECT_EQ(takes_part(RadiusRule::seed, regime), touches(regime));
     EXPECT_EQ(takes_part(RadiusRule::yielded, regime), regime == Regime::fully_plastic);
-    EXPECT_FALSE(takes_part(RadiusRule::fixed, regime));
   }
 }
 

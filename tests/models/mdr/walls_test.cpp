@@ -29,8 +29,8 @@ TEST(MdrWalls, MeasureDisplacementsInRadiiAndForcesInTheirUnit) {
   const Walls walls = driven(at, {{0.0, 1.0}, {0.0, 3.0, Control::force}, {0.5, 0.25}});
   EXPECT_DOUBLE_EQ(walls.drive(0).end(), 0.5);
   EXPECT_DOUBLE_EQ(walls.drive(1).end(), 3.0 / at.force_unit());
-  EXPECT_FALSE(walls.is_loaded(0));
-  EXPECT_TRUE(walls.is_loaded(1));
+  EXPECT_FALSE(walls.is_force_controlled(0));
+  EXPECT_TRUE(walls.is_force_controlled(1));
 }
 
 TEST(MdrWalls, PositionsAreExactAtBothEndsOfAStep) {
@@ -50,7 +50,7 @@ TEST(MdrWalls, TheFastestWallUnderDisplacementControlGivesTheSpeed) {
 
 TEST(MdrWalls, AForceThatIsRoundOffBesideTheOthersMayBeSlight) {
   const Walls walls =
-      driven(setup(), {{0.0, 1.0, Control::force}, {0.0, 0.5 * k_no_force, Control::force}, {0.0, 1e-12}});
+      driven(setup(), {{0.0, 1.0, Control::force}, {0.0, 0.5 * k_no_net_force, Control::force}, {0.0, 1e-12}});
   EXPECT_FALSE(walls.may_be_slight(0));
   EXPECT_TRUE(walls.may_be_slight(1));
   EXPECT_FALSE(walls.may_be_slight(2));  // a displacement
