@@ -16,6 +16,7 @@ namespace monograin::hertz {
 struct WallLaw {
   struct Branch {};  ///< unloading retraces loading
   static constexpr std::array<std::string_view, 2> k_regimes{"open", "elastic"};
+  static constexpr bool k_is_tested = true;  ///< tests compare its functions, so that no run has to
   /// Distance of a wall from the particle's centre, over R0, at which the wall counts as having reached the centre.
   static constexpr double k_least_distance = 1e-3;
 
