@@ -23,7 +23,6 @@
 #include <functional>
 #include <span>
 #include <stdexcept>
-#include <string>
 #include <string_view>
 #include <vector>
 

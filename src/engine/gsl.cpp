@@ -9,8 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <new>
-#include <stdexcept>
-#include <string>
 
 #include "engine/c_library.hpp"
 #include "engine/stepper.hpp"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
 namespace monograin {

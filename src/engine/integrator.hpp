@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "engine/guard_set.hpp"
 #include "scenario/integrators.hpp"

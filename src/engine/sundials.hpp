@@ -10,10 +10,8 @@
 
 #include <cstdlib>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "engine/c_library.hpp"

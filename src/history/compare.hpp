@@ -3,7 +3,6 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
 #include "history/table.hpp"
 #include "monograin/comparison.hpp"

@@ -1,7 +1,6 @@
 #include "numerics/intervals.hpp"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <iterator>

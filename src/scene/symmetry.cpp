@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "scene/scene.hpp"
 #include "system/resolution.hpp"

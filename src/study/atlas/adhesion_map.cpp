@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 
 #include "catalogue.hpp"
 #include "history/run.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "history/table.hpp"
 #include "scenario/scenario.hpp"

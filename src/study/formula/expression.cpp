@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <span>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 

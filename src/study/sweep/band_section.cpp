@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
-#include <string_view>
 
 #include "scenario/words.hpp"
 #include "study/sweep/sweep_language.hpp"

@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <boost/math/distributions/normal.hpp>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>

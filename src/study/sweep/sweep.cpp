@@ -16,7 +16,6 @@
 #include <stdexcept>
 #include <string_view>
 #include <unordered_map>
-#include <utility>
 
 #include "figure/page.hpp"
 #include "history/run.hpp"

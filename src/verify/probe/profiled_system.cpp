@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <functional>
 #include <stdexcept>
 #include <utility>
 
