@@ -24,12 +24,6 @@ constexpr double k_most_of_guard = 1e-12;
 constexpr double k_round_off_of_root = 1e-15;
 constexpr double k_share_of_progress = 1e-2;  // width of the bracket of a root, over least_progress()
 
-bool crosses(int direction, double before, double after) noexcept {
-  if (direction > 0) return before < 0.0 && after >= 0.0;
-  if (direction < 0) return before > 0.0 && after <= 0.0;
-  return (before < 0.0 && after >= 0.0) || (before > 0.0 && after <= 0.0);
-}
-
 }  // namespace
 
 EventLocator::EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t samples)

@@ -12,6 +12,12 @@ bool equals_target(double value, double target) noexcept {
   return std::abs(value - target) <= k_same_number * std::max(std::abs(value), std::abs(target));
 }
 
+bool crosses(int direction, double before, double after, double tolerance) noexcept {
+  const bool rises = before < -tolerance && after >= 0.0;
+  const bool falls = before > tolerance && after <= 0.0;
+  return (rises && direction >= 0) || (falls && direction <= 0);
+}
+
 void GuardSet::begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y) {
   std::swap(conditions_, of_last_step_);
   conditions_.clear();

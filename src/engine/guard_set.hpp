@@ -27,6 +27,11 @@ struct Condition {
 inline constexpr std::size_t k_evaluations_before_end = 12;
 inline constexpr double k_approach_to_end = 0.25;
 
+/// True if a guard crosses zero, or reaches it, between two values.
+/// @param direction  in which it counts: 1 rising, -1 falling, 0 both
+/// @param tolerance  a guard nearer to zero than this before does not cross it
+[[nodiscard]] bool crosses(int direction, double before, double after, double tolerance = 0.0) noexcept;
+
 class GuardSet {
  public:
   explicit GuardSet(HybridSystem& system) : system_(system) {}

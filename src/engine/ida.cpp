@@ -165,7 +165,7 @@ class Ida final : public Integrator {
     if (carried_) check("IDAGetSensDky", carried_->put(memory_.get(), xi, end_));
   }
 
-  [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-2 * tolerances_.rtol; }
+  [[nodiscard]] double guard_tolerance() const noexcept override { return guard_tolerance_of(tolerances_); }
 
   [[nodiscard]] Statistics statistics() const override {
     if (past_.segments == 0) return past_;

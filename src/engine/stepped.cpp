@@ -179,10 +179,7 @@ class FixedStep final : public Integrator {
     guard_set_.values(end_, complete_, values_);
     fired_.clear();
     for (std::size_t g = 0; g < values_.size(); ++g) {
-      const int direction = guard_set_.directions()[g];
-      const bool rises = before_[g] < 0.0 && values_[g] >= 0.0 && direction >= 0;
-      const bool falls = before_[g] > 0.0 && values_[g] <= 0.0 && direction <= 0;
-      if (rises || falls) fired_.push_back(g);
+      if (crosses(guard_set_.directions()[g], before_[g], values_[g])) fired_.push_back(g);
     }
     return {.xi = end_, .hit_guard = !fired_.empty()};
   }

@@ -17,12 +17,6 @@ namespace {
 // Accuracy of the libraries' roots, over the sum of the end and the length of the step.
 constexpr double k_round_off_of_root = 100.0 * k_epsilon;
 
-bool crosses(int direction, double before, double after, double tolerance) noexcept {
-  const bool rises = before < -tolerance && after >= 0.0;
-  const bool falls = before > tolerance && after <= 0.0;
-  return (rises && direction >= 0) || (falls && direction <= 0);
-}
-
 /// A guard, and where it crosses zero.
 struct Crossing {
   double xi = 0.0;
