@@ -96,7 +96,7 @@ StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> h
 Ramp ramp_after(const StepPlan& plan, const HybridSystem& system, int channel, double xi) {
   const Ramp& ramp = plan.ramps[static_cast<std::size_t>(channel)];
   const bool is_lost = ramp.control == Control::force && system.is_open(channel);
-  const double value = is_lost ? 0.0 : std::lerp(ramp.start, ramp.end, xi);
+  const double value = is_lost ? 0.0 : ramp.value(xi);
   return {value, value, ramp.control};
 }
 

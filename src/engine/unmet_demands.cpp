@@ -46,7 +46,7 @@ void UnmetDemands::note_conditions(const StepPlan& plan, const StepClock& clock,
 void UnmetDemands::note_forces(const StepPlan& plan, const StepClock& clock, double xi) {
   for (std::size_t c = 0; c < open_since_.size(); ++c) {
     const Ramp& ramp = plan.ramps[c];
-    const double force = std::lerp(ramp.start, ramp.end, xi);
+    const double force = ramp.value(xi);
     const bool was_open = open_since_[c] && xi - *open_since_[c] > k_same_instant;
     if (ramp.control != Control::force || force == 0.0 || !was_open) continue;
     notes_.add(clock.step + 1,
