@@ -19,7 +19,6 @@ namespace {
 
 using Driver = Handle<gsl_odeiv2_driver*, gsl_odeiv2_driver_free>;
 
-constexpr double k_first_step = 1e-3;
 constexpr double k_smallest_step = 1e-2;  // over least_progress()
 // Largest distance, over the tolerance of a step, of an implicit step from the range to which the rates at its ends
 // lead. Beyond k_doubtful the distance is corrected for the dependence of the rates on the state, and may then be

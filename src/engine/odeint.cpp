@@ -21,7 +21,6 @@ namespace {
 
 namespace odeint = boost::numeric::odeint;
 
-constexpr double k_first_step = 1e-3;
 // First step of the linearly implicit method if rates may be singular: its difference quotients do not show a
 // singularity, and now and then two errors cancel in its estimate. The error is proportional to the square of the step.
 constexpr double k_first_step_of_slaves = 1e-9;

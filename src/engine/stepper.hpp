@@ -9,6 +9,9 @@
 
 namespace monograin {
 
+/// First step that a code tries (step coordinates).
+inline constexpr double k_first_step = 1e-3;
+
 /// The explicit form with every unknown over its own scale, so that one absolute tolerance serves all unknowns.
 class ScaledForm {
  public:
