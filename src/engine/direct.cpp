@@ -7,114 +7,32 @@
 #include <stdexcept>
 
 #include "engine/event_locator.hpp"
+#include "engine/rate_round_off.hpp"
 #include "numerics/legendre_series.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
-// Greatest length of a piece (step coordinates) per node; guards are evaluated at the nodes. Pieces are shorter if the
-// state or the quadrature needs it. If all guards are monotone and nothing is integrated, a piece may be the whole
-// step.
-constexpr double k_longest_per_node = 1.0 / 24.0;
 // A remainder of the step up to this share of a piece is merged into the piece.
 constexpr double k_rest = 0.25;
-// Early evaluations of the guards, between the beginning of a segment and its first node: distance of the first one
-// (step coordinates), and ratio of successive distances. A guard that begins nearer to zero than k_near_zero, but is
-// not zero to within round-off, may cross and return before the first node. Dependent unknowns may start with an
-// infinite slope; guards then count as near from farther away.
-constexpr double k_first_sample = 1e-9;
-constexpr double k_grading = 30.0;
-constexpr double k_near_zero = 1e-3;
-constexpr double k_near_zero_if_steep = 0.1;
-// Pieces shorter than k_tiny (step coordinates) in which the equations may end, and how many a segment may have. More
-// of them are round-off without progress.
+// Pieces up to this length (step coordinates) cannot be told from round-off.
 constexpr double k_tiny = 1e-10;
-constexpr int k_most_refusals = 200;
 // Largest and smallest ratio of a piece's length to the length before, and the safety factor on the predicted length.
 constexpr double k_most_growth = 2.0;
 constexpr double k_most_shrinkage = 0.2;
 constexpr double k_safety = 0.85;
-// Tolerance of a piece's series, over the work: rtol times the larger of rtol and k_share_of_work, but at least
-// k_round_off_of_work. Next to a singularity of the work, as at a first touch, the error is up to a hundred times that.
+// Least tolerance of a piece's series, over the work.
 constexpr double k_round_off_of_work = 1e-16;
-constexpr double k_share_of_work = 1e-3;
-// If the closed form of the work is costly and a step has at least k_many_rows rows, the rows take the work from series
-// over panels of a piece, accurate to k_panel_accuracy over the work. A panel no longer than k_shortest_panel (step
-// coordinates) whose series is less accurate lies next to a singularity: its rows use the closed form.
+// A step of at least so many rows takes their work from series, if its closed form is costly.
 constexpr std::size_t k_many_rows = 50;
-constexpr double k_shortest_panel = 1.0 / 32.0;
-constexpr double k_panel_accuracy = 1e-15;
-// Last terms of a series of rates up to this many times the round-off of the work count as round-off: the rates are
-// then next to nothing beside the work.
-constexpr double k_noise_of_nothing = 1e4;
-// Few nodes are enough for the work if its tolerance is at least this.
-constexpr double k_few_nodes_accuracy = 1e-5;
-// An event before the share k_deep_inside of a piece may have all nodes beyond it; one before k_inside, some. The work
-// up to the event may have the error k_event_accuracy, over the work, as estimated from the rates at the beginning and
-// at the event. A piece that is covered again ends at k_just_beyond times the event's distance from its beginning.
-constexpr double k_deep_inside = 0.5;
-constexpr double k_inside = 0.99;
-constexpr double k_event_accuracy = 1e-13;
-constexpr double k_just_beyond = 1.001;
-// Change of an unknown, over its scale, that is a jump if it happens within the round-off of the step coordinate.
-constexpr double k_spring = 1e-8;
-// Largest last terms of a piece's series, over its largest term, that show a single branch where there are several. The
-// passage from one branch to another is a jump or behaves like a square root, and its series converges more slowly.
-constexpr double k_unresolved = 1e-2;
-// Smaller last terms, over the unknown's scale, are round-off and pass that test.
-constexpr double k_round_off_of_branch = 1e-8;
-// The quadrature does not refine pieces shorter than this (step coordinates): their error is below the round-off of the
-// whole work.
-constexpr double k_smallest_quadrature = 1e-6;
-
-/// Estimates the round-off of the rates from the series of pieces. A shorter piece from the beginning of a refused one
-/// shows round-off if its last terms are as large as those of the refused piece. The last terms next to a square root
-/// fall as the length to the power 1/2, those next to a kink as the length. A kink just inside the refused piece can
-/// imitate round-off, but not with similar terms several times. Once round-off is known, pieces may show it: pieces
-/// short enough to avoid it would let it add up in their states.
-class RateRounding {
- public:
-  [[nodiscard]] double known() const noexcept { return known_; }
-
-  void see(const LegendreSeries& rate, double begin, double length, bool is_refused) noexcept {
-    const double tail = rate.tail();
-    if (begin != refused_at_) {
-      if (!is_refused) return;
-      refused_at_ = begin;
-      refused_length_ = length;
-      refused_tail_ = tail;
-      return;
-    }
-    if (tail < k_as_large * refused_tail_ || length > k_shorter * refused_length_) return;
-    if (refused_tail_ > k_most * rate.largest()) return;
-    if (std::max(largest_, refused_tail_) > k_alike * std::min(largest_, refused_tail_)) {
-      largest_ = 0.0;
-      count_ = 0;
-    }
-    largest_ = std::max(largest_, refused_tail_);
-    if (++count_ >= k_often) known_ = largest_;
-    refused_at_ = -1.0;
-  }
-
- private:
-  static constexpr double k_shorter = 0.5;
-  static constexpr double k_as_large = 0.75;
-  static constexpr double k_most = 1e-6;  // over the largest term of the rates
-  static constexpr double k_alike = 10.0;
-  static constexpr int k_often = 3;
-
-  double refused_at_ = -1.0;
-  double refused_length_ = 0.0, refused_tail_ = 0.0;
-  int count_ = 0;
-  double largest_ = 0.0, known_ = 0.0;
-};
 
 class Direct final : public EventLocator {
  public:
   Direct(HybridSystem& system, double rtol, GuardSet& guard_set, std::size_t rows)
       : EventLocator(system, guard_set, k_most_nodes),
         has_many_rows_(rows >= k_many_rows),
-        work_accuracy_(std::max(k_round_off_of_work, rtol * std::max(rtol, k_share_of_work))) {
+        work_accuracy_(work_accuracy_of(rtol)) {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end() && system.has_energies())
@@ -133,6 +51,7 @@ class Direct final : public EventLocator {
   }
 
   void begin(double xi, std::span<const double> y) override {
+    constexpr double k_few_nodes_accuracy = 1e-5;  // tolerance of the work for which few nodes are enough
     segment_begin_ = xi;
     refusals_ = 0;
     round_off_ = {};
@@ -149,6 +68,7 @@ class Direct final : public EventLocator {
   }
 
   Advance advance() override {
+    constexpr int k_most_refusals = 200;  // more tiny pieces of a segment are round-off without progress
     ++statistics_.steps;
     begin_piece();
     system_.branch_reach(begin_state_, branch_reach_);
@@ -181,7 +101,7 @@ class Direct final : public EventLocator {
     if (quadrature_) y[*quadrature_] = has_panels_ ? panel_work_at(xi, y) : quadrature_at(xi, y);
   }
 
-  [[nodiscard]] double guard_tolerance() const noexcept override { return 1e-13; }
+  [[nodiscard]] double guard_tolerance() const noexcept override { return k_zero_guard; }
 
  private:
   /// A part of a piece in which one series gives the work of the rows. work_ is that series; with a closed form it has
@@ -200,6 +120,13 @@ class Direct final : public EventLocator {
       return 0.5 * length() * rate.integral(at);
     }
   };
+
+  /// Tolerance of a piece's series, over the work: rtol times the larger of rtol and a share. Next to a singularity of
+  /// the work, as at a first touch, the error is up to a hundred times that.
+  [[nodiscard]] static double work_accuracy_of(double rtol) noexcept {
+    constexpr double k_share = 1e-3;
+    return std::max(k_round_off_of_work, rtol * std::max(rtol, k_share));
+  }
 
   /// Position of xi in the piece, from -1 at its beginning to 1 at its end.
   [[nodiscard]] double position(double xi) const noexcept {
@@ -249,6 +176,13 @@ class Direct final : public EventLocator {
   ///   length; unchanged if nothing limits it
   /// @return false if the piece is too long
   bool cover_piece(double& factor) {
+    // The quadrature does not refine pieces shorter than this (step coordinates): their error is below the round-off of
+    // the whole work.
+    constexpr double k_smallest_quadrature = 1e-6;
+    // An event before this share of the piece has nodes beyond it. A piece that is covered again ends at k_just_beyond
+    // times the event's distance from its beginning.
+    constexpr double k_inside = 0.99;
+    constexpr double k_just_beyond = 1.001;
     forget_samples();
     if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
     if (begin_ == segment_begin_) sample_early();
@@ -278,7 +212,7 @@ class Direct final : public EventLocator {
     }
     move_end(piece_end_);
     locate_event();
-    if (has_sprung()) {
+    if (has_jumped()) {
       factor = k_most_shrinkage;
       return false;
     }
@@ -302,8 +236,11 @@ class Direct final : public EventLocator {
   /// @param work      work where the interval begins
   /// @param length    of the interval, in step coordinates
   /// @param accuracy  tolerated error, over the work
-  /// @param rounding  known round-off of the rates
+  /// @param round_off  known round-off of the rates
   [[nodiscard]] double work_reach(double work, double length, double accuracy, double round_off = 0.0) const {
+    // Last terms of a series of rates up to this many times the round-off of the work count as round-off: the rates are
+    // then next to nothing beside the work.
+    constexpr double k_noise_of_nothing = 1e4;
     const double scale = std::max(std::abs(work), system_.unknowns()[*quadrature_].scale);
     // The tolerance itself must not count as round-off: terms next to a kink fall slowly, and the sum of those left out
     // exceeds the last ones kept.
@@ -314,15 +251,19 @@ class Direct final : public EventLocator {
   /// True if the states of the piece lie on another branch than its beginning: an event there comes with a jump of the
   /// state. Next to a fold, the solver may find the other branch at the first node of a long piece; shorter pieces
   /// avoid this.
-  [[nodiscard]] bool has_sprung() const noexcept {
+  [[nodiscard]] bool has_jumped() const noexcept {
+    constexpr double k_jumped = 1e-8;  // change of an unknown within round-off of xi, over its scale, that is a jump
     if (fired_.empty() || end_ - begin_ > least_progress(begin_) || piece_length() <= k_tiny) return false;
     for (std::size_t k = 0; k < end_state_.size(); ++k) {
-      if (std::abs(end_state_[k] - begin_state_[k]) > k_spring * system_.unknowns()[k].scale) return true;
+      if (std::abs(end_state_[k] - begin_state_[k]) > k_jumped * system_.unknowns()[k].scale) return true;
     }
     return false;
   }
 
+  /// Greatest length of a piece. Guards are evaluated at its nodes; if all are monotone and nothing is integrated, a
+  /// piece may be the whole step.
   [[nodiscard]] double longest() const noexcept {
+    constexpr double k_longest_per_node = 1.0 / 24.0;
     return is_closed_ && guard_set_.is_monotone() ? 1.0 : k_longest_per_node * static_cast<double>(nodes_->count);
   }
   [[nodiscard]] double piece_length() const noexcept { return piece_end_ - begin_; }
@@ -340,6 +281,13 @@ class Direct final : public EventLocator {
   /// True if the states up to the end of the piece lie on one branch of solutions: nodes lie before the end, and the
   /// series through them converge.
   [[nodiscard]] bool is_resolved() const {
+    // An event before this share of the piece may have all nodes beyond it.
+    constexpr double k_deep_inside = 0.5;
+    // Largest last terms of a series, over its largest term, that show a single branch. The passage from one branch to
+    // another is a jump or behaves like a square root, and its series converges more slowly. Smaller last terms, over
+    // the unknown's scale, are round-off and pass.
+    constexpr double k_unresolved = 1e-2;
+    constexpr double k_round_off_of_branch = 1e-8;
     const double length = piece_length();
     if (end_ - begin_ <= least_progress(begin_)) return true;
     if (end_ - begin_ < k_deep_inside * length) return false;
@@ -372,13 +320,17 @@ class Direct final : public EventLocator {
   /// step may begin with a singularity, as at first touch, in which one guard is smooth and another is not. A segment
   /// that begins soon after is as near to the singularity.
   void sample_early() {
+    // A guard that begins nearer to zero than this, but is not zero to within round-off, may cross and return before
+    // the first node. Dependent unknowns may start with an infinite slope: guards then count as near from farther away.
+    constexpr double k_near_zero = 1e-3;
+    constexpr double k_near_zero_if_steep = 0.1;
+    constexpr double k_grading = 30.0;  // ratio of successive distances from the beginning
     const double near = has_dependent_unknowns_ ? k_near_zero_if_steep : k_near_zero;
     const auto is_near = [near](double value) { return std::abs(value) > k_zero_guard && std::abs(value) < near; };
     if (std::ranges::none_of(begin_values_, is_near)) return;
     const double first_node = 0.5 * piece_length() * (1.0 + nodes_->places[0]);
     try {
-      for (double distance = std::max(k_first_sample, begin_); k_grading * distance <= first_node;
-           distance *= k_grading) {
+      for (double distance = std::max(k_ahead, begin_); k_grading * distance <= first_node; distance *= k_grading) {
         std::ranges::copy(begin_state_, trial_.begin());
         ++statistics_.rhs_evaluations;
         system_.solve(begin_ + distance, trial_);
@@ -415,6 +367,7 @@ class Direct final : public EventLocator {
   /// True if the series of the work holds up to the event that ended the piece. Nodes lie beyond the event, where the
   /// mode need not continue smoothly (a contact that opens has no force).
   [[nodiscard]] bool holds_up_to_end() {
+    constexpr double k_event_accuracy = 1e-13;  // error of the work up to the event, over the work
     system_.rates(end_, end_state_, rates_);
     const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
     const auto is_same = [&](double xi, std::span<const double> rates) {
@@ -444,6 +397,10 @@ class Direct final : public EventLocator {
 
   /// Fits the series of the work over the next panel. No event lies inside a piece, so the mode holds at all nodes.
   void take_next_panel() {
+    // A panel no longer than this (step coordinates) whose series is less accurate, over the work, lies next to a
+    // singularity: its rows use the closed form.
+    constexpr double k_shortest_panel = 1.0 / 32.0;
+    constexpr double k_panel_accuracy = 1e-15;
     const LegendreNodes& nodes = LegendreNodes::many();
     if (panel_.is_resolved) {
       panel_.work += panel_.integral(work_, 1.0);
@@ -485,7 +442,7 @@ class Direct final : public EventLocator {
   double length_ = 0.0;                  ///< length of the next piece
   double piece_end_ = 0.0;               ///< where the piece would end without an event
   LegendreSeries work_;                  ///< rate of the quadrature
-  RateRounding round_off_;               ///< round-off of the rates in this segment
+  RateRoundOff round_off_;               ///< round-off of the rates in this segment
   std::size_t integrated_ = 0;           ///< number of unknowns with rates(): the first ones
   std::vector<LegendreSamples> gains_;   ///< change of each unknown from the beginning of the piece to its nodes
   std::vector<LegendreSamples> slopes_;  ///< rates of the integrated unknowns at the nodes
