@@ -18,8 +18,8 @@ namespace monograin {
 class ForwardSensitivities;
 
 struct Tolerances {
-  double rtol = 1e-8;
-  double atol = 1e-12;  ///< relative to each unknown's own scale
+  double rtol = integrators::k_default_rtol;
+  double atol = integrators::k_default_atol;  ///< relative to each unknown's own scale
 };
 
 /// Counts of one run, summed over its segments.

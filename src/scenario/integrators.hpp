@@ -1,4 +1,4 @@
-/// Names of the integrators that a scenario may select. No other file spells them.
+/// Names of the integrators that a scenario may select, and their default tolerances. No other file spells them.
 #pragma once
 
 #include <array>
@@ -38,5 +38,8 @@ inline constexpr std::array<std::string_view, 15> k_all{k_auto,
                                                         k_gsl_msadams,
                                                         k_gsl_msbdf,
                                                         k_explicit};
+
+inline constexpr double k_default_rtol = 1e-8;
+inline constexpr double k_default_atol = 1e-12;  ///< relative to each unknown's own scale
 
 }  // namespace monograin::integrators

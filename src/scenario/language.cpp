@@ -136,13 +136,13 @@ std::vector<KeySpec> numerics_keys() {
        .meaning = "relative tolerance",
        .kind = Kind::quantity,
        .range = {.lower = 1e-14, .upper = 1e-1},
-       .default_value = 1e-8,
+       .default_value = integrators::k_default_rtol,
        .example = "1e-8"},
       {.name = "atol",
        .meaning = "absolute tolerance, relative to the state's own scale",
        .kind = Kind::quantity,
        .range = {.lower = 0.0, .upper = 1e-1, .lower_is_open = true},
-       .default_value = 1e-12,
+       .default_value = integrators::k_default_atol,
        .example = "1e-12"},
   };
 }

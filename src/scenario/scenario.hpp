@@ -68,8 +68,8 @@ struct Output {
 
 struct Numerics {
   std::string integrator = integrators::k_auto;
-  double rtol = 1e-8;
-  double atol = 1e-12;  ///< relative to the state's own scale
+  double rtol = integrators::k_default_rtol;
+  double atol = integrators::k_default_atol;  ///< relative to the state's own scale
 };
 
 class ScenarioTemplate;

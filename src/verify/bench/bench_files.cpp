@@ -118,7 +118,7 @@ void append_scene(const BenchScene& scene, std::string& text) {
 /// Time of `cvode-bdf` over that of "auto", at the error that "auto" has at the default tolerance. If `cvode-bdf` never
 /// reaches that error, its time to its least error gives a lower bound, marked by ">".
 [[nodiscard]] std::string bdf_at_own_error(const BenchScene& scene) {
-  constexpr double k_default_rtol = Tolerances{}.rtol;
+  using integrators::k_default_rtol;
   const auto own = std::ranges::find_if(scene.points, [](const BenchPoint& point) {
     return point.integrator == integrators::k_auto && std::abs(point.rtol - k_default_rtol) < 1e-3 * k_default_rtol;
   });

@@ -38,8 +38,6 @@ constexpr double k_slower = 1e6;
 constexpr Magnification k_magnification{.length = 731.0585, .stress = 1.618034e-5};
 // Number of turned copies of a scene that a limit has ended, and of further copies that measure their mutual distance.
 constexpr std::uint64_t k_rotations = 4;
-// Relative tolerance of the integrated forms with which the direct form is compared.
-constexpr double k_form_rtol = 1e-8;
 
 /// The larger of two numbers; nan counts as the largest.
 double worse(double a, double b) { return a > b || std::isnan(a) ? a : b; }
@@ -324,12 +322,12 @@ class SceneCheck {
     compare("carried", expected, actual, {.copies = turned_copies(sample)});
   }
 
-  /// Compares the reference with a run by another integrator; the direct form with one at the tolerance k_form_rtol.
+  /// Compares the reference with a run by another integrator; the direct form with one at the default tolerance.
   void check_form(const Run& run, const char* integrator) {
     CheckedScenario other = with_integrator(scenario_, integrator);
     if (run.integrator.is_direct()) {
-      other.numerics.rtol = k_form_rtol;
-      other.numerics.atol = 1e-4 * k_form_rtol;
+      other.numerics.rtol = integrators::k_default_rtol;
+      other.numerics.atol = 1e-4 * integrators::k_default_rtol;
     }
     SceneCheck check(other, effort_);
     check.end_ = end_;

@@ -408,7 +408,7 @@ void check_work(const Run& run, Violations& found) {
   // The run has failed because of its work; check_end() judges whether it may.
   if (run.record.failure == Failure::too_much_work) return;
   // The number of steps of a method of order 4 grows as rtol^(-1/4).
-  const double finer = std::pow(std::max(1.0, 1e-8 / run.scenario.numerics.rtol), 0.25);
+  const double finer = std::pow(std::max(1.0, integrators::k_default_rtol / run.scenario.numerics.rtol), 0.25);
   const long most = run.integrator.is_direct() ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
   const Statistics& done = run.record.statistics;
   const long work = done.rhs_evaluations + done.guard_evaluations;

@@ -56,7 +56,7 @@ struct StressScene {
   int cycles = 1;  ///< number of times that the steps are repeated
   std::vector<StressWall> walls;
   std::string integrator = integrators::k_direct;
-  double rtol = 1e-8;
+  double rtol = integrators::k_default_rtol;
   int points = 12;
 
   bool operator==(const StressScene&) const = default;

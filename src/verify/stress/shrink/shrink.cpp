@@ -129,7 +129,7 @@ void add_plainer(const StressScene& scene, Smaller& smaller) {
     smaller.add([&](StressScene& s) { s.material.erase(std::string(key.name)); });
   }
   smaller.add([](StressScene& s) { s.integrator = integrators::k_direct; });
-  smaller.add([](StressScene& s) { s.rtol = 1e-8; });
+  smaller.add([](StressScene& s) { s.rtol = integrators::k_default_rtol; });
   smaller.add([](StressScene& s) { s.radius = 1.0; });
   smaller.add([](StressScene& s) { s.stress = 1.0; });
 }
