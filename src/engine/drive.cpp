@@ -24,9 +24,6 @@
 namespace monograin {
 namespace {
 
-// Finer tolerances may be below the round-off of a scene's own equations.
-constexpr double k_surest_rtol = 1e-11;
-
 /// About how many output points a step has.
 [[nodiscard]] std::size_t rows_of_step(const Scene& scene, const Output& output) {
   if (output.times.empty()) return static_cast<std::size_t>(output.points);
@@ -70,9 +67,9 @@ class Drive {
       result.message = clock_.where(error.xi()) + error.what();
       result.difficulty = difficulty_here();
       if (result.difficulty) result.message += fmt::format("; {}", advice(*result.difficulty));
-      if (rtol_ && *rtol_ < k_surest_rtol) {
+      if (rtol_ && *rtol_ < k_finest_rtol) {
         result.message += fmt::format("; rtol = {:.3g} asks for errors of the size of rounding, expected {:g} or more",
-                                      *rtol_, k_surest_rtol);
+                                      *rtol_, k_finest_rtol);
       }
     }
     result.statistics = integrator_->statistics();

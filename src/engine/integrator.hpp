@@ -22,6 +22,10 @@ struct Tolerances {
   double atol = integrators::k_default_atol;  ///< relative to each unknown's own scale
 };
 
+/// Finest rtol that an integrator is expected to keep: the round-off of a scene's own equations may exceed finer ones
+/// (docs/reference/limits.md).
+inline constexpr double k_finest_rtol = 1e-11;
+
 /// Counts of one run, summed over its segments.
 struct Statistics {
   long steps = 0;

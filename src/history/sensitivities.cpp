@@ -21,9 +21,8 @@
 namespace monograin {
 namespace {
 
-constexpr double k_direct_noise = 1e-14;  // relative round-off of states that `direct` solves for
-constexpr double k_finest_rtol = 1e-11;   // upper bounds of the tolerances of runs for differences
-constexpr double k_finest_atol = 1e-14;
+constexpr double k_direct_round_off = 1e-14;  // relative, of states that `direct` solves for
+constexpr double k_finest_atol = 1e-14;  // upper bound of atol of runs for differences; that of rtol is k_finest_rtol
 
 // Step of the neighbours over the value of the key. It balances the error of the difference quotient and the round-off
 // of equations that are evaluated at one state.
@@ -285,7 +284,7 @@ template <class Value>
       return largest_of(history.row_count(), [&](std::size_t row) { return history.at(row, c); });
     };
     const double size = largest(*derivative);
-    const double round_off = k_direct_noise * largest(column) / step;
+    const double round_off = k_direct_round_off * largest(column) / step;
     if (size > 10.0 * round_off) result = std::max(result, round_off / size);
   }
   return result;
@@ -406,7 +405,7 @@ void add_sensitivities(Run& run, const std::string& why, const std::function<Sce
   Table& events = run.record.events;
   const Segments base(history);
   const bool is_direct = run.integrator.is_direct();
-  const double noise = is_direct ? k_direct_noise : std::min(scenario.numerics.rtol, k_finest_rtol);
+  const double noise = is_direct ? k_direct_round_off : std::min(scenario.numerics.rtol, k_finest_rtol);
   const double share = std::cbrt(noise);
   const Tolerances tolerances{std::min(scenario.numerics.rtol, k_finest_rtol),
                               std::min(scenario.numerics.atol, k_finest_atol)};

@@ -11,10 +11,6 @@
 
 namespace monograin {
 
-/// Finest rtol that an integrator is expected to keep: the round-off of a scene's own equations may exceed finer ones
-/// (docs/reference/limits.md).
-inline constexpr double k_finest_rtol = 1e-11;
-
 /// Relative change of a scene's data that stands for round-off on the path from a text to a state.
 inline constexpr double k_stress_round_off = 16.0 * k_epsilon;
 

@@ -21,7 +21,6 @@ namespace monograin {
 namespace {
 
 constexpr std::uint64_t k_of_steps = 1000;  // added to the seeds for the changes of steps
-constexpr double k_reference_rtol = 1e-11;
 
 void for_each_program(CheckedScenario& scenario, const std::function<void(std::vector<Step>&, double gap)>& change) {
   change(scenario.loading.steps, 0.0);
@@ -187,8 +186,8 @@ CheckedScenario with_integrator(CheckedScenario scenario, std::string integrator
 CheckedScenario as_reference(CheckedScenario scenario) {
   const bool is_solvable = make_scene(scenario).system->is_solvable();
   scenario.numerics = {.integrator = is_solvable ? integrators::k_direct : integrators::k_cvode_bdf,
-                       .rtol = k_reference_rtol,
-                       .atol = 1e-4 * k_reference_rtol};
+                       .rtol = k_finest_rtol,
+                       .atol = 1e-4 * k_finest_rtol};
   return scenario;
 }
 
