@@ -36,6 +36,10 @@ constexpr std::size_t k_time = 0;
 constexpr std::size_t k_step = 1;
 constexpr std::size_t k_side = 2;
 
+[[nodiscard]] RowSide side_of(const Table& history, std::size_t row) {
+  return static_cast<RowSide>(static_cast<int>(history.at(row, k_side)));
+}
+
 /// Rows of a history just before and just after all events at one instant; the end of a step is an event, too. Events
 /// at one instant may have rows of their own, or share them. Never empty.
 using Corner = std::vector<std::size_t>;
@@ -47,18 +51,18 @@ class Segments {
     const double slack = k_same_instant * duration();
     std::size_t segment = 0;
     for (std::size_t row = 0; row < history.row_count(); ++row) {
-      if (side(row) != 0.0) {
+      if (side(row) != RowSide::output) {
         const bool is_same = !corners_.empty() && time(row) - time(corners_.back().front()) <= slack;
         if (!is_same) corners_.emplace_back();
         corners_.back().push_back(row);
-        if (side(row) > 0.0) segment = corners_.size();
+        if (side(row) == RowSide::after) segment = corners_.size();
       }
       of_row_.push_back(segment);
     }
   }
 
   [[nodiscard]] double time(std::size_t row) const { return history_.at(row, k_time); }
-  [[nodiscard]] double side(std::size_t row) const { return history_.at(row, k_side); }
+  [[nodiscard]] RowSide side(std::size_t row) const { return side_of(history_, row); }
   [[nodiscard]] std::size_t segment(std::size_t row) const { return of_row_[row]; }
   [[nodiscard]] const std::vector<Corner>& corners() const noexcept { return corners_; }
   [[nodiscard]] double duration() const { return history_.row_count() == 0 ? 0.0 : time(history_.row_count() - 1); }
@@ -73,7 +77,7 @@ class Segments {
       (time(middle) < instant - slack ? low : high) = time(middle) < instant - slack ? middle + 1 : middle;
     }
     for (std::size_t row = low; row < of_row_.size() && time(row) <= instant + slack; ++row) {
-      if (side(row) == 0.0 && of_row_[row] == segment) return row;
+      if (side(row) == RowSide::output && of_row_[row] == segment) return row;
     }
     return std::nullopt;
   }
@@ -142,11 +146,11 @@ class Differences {
       for (const std::size_t row : corners[corner]) {
         corner_of_row[row] = corner;
         // An output row at the instant of a corner follows the row just before the event.
-        const bool is_shared = base.side(row) < 0.0 && row + 1 < history.row_count() && base.side(row + 1) == 0.0 &&
-                               base.time(row + 1) == base.time(row);
+        const bool is_shared = base.side(row) == RowSide::before && row + 1 < history.row_count() &&
+                               base.side(row + 1) == RowSide::output && base.time(row + 1) == base.time(row);
         if (is_shared) corner_of_row[row + 1] = corner;
       }
-      if (corner < corners_ && base.side(corners[corner].back()) > 0.0) begun = corner + 1;
+      if (corner < corners_ && base.side(corners[corner].back()) == RowSide::after) begun = corner + 1;
     }
     for (std::size_t row = 0; row < history.row_count(); ++row) {
       partners_.push_back(base.segment(row) > begun ? Partners() : partners_of(row, corner_of_row[row]));
@@ -197,7 +201,7 @@ class Differences {
                                        bool are_alike) const {
     const Corner& here = base_.corners()[corner];
     const Corner& there = other.segments.corners()[corner];
-    if (!are_alike) return base_.side(row) > 0.0 ? there.back() : there.front();
+    if (!are_alike) return base_.side(row) == RowSide::after ? there.back() : there.front();
     const auto place = std::ranges::upper_bound(here, row) - here.begin();
     return there[static_cast<std::size_t>(place) - 1];
   }
@@ -217,7 +221,7 @@ class Differences {
   std::vector<double> instants;
   for (std::size_t row = 0; row < rows; ++row) {
     const bool is_new = base.time(row) > (instants.empty() ? 0.0 : instants.back());
-    if (base.side(row) == 0.0 && is_new) instants.push_back(base.time(row));
+    if (base.side(row) == RowSide::output && is_new) instants.push_back(base.time(row));
   }
   return instants;
 }
@@ -266,8 +270,9 @@ template <class Value>
   std::vector<double> largest;
   const std::size_t first = wide.columns().size() - 2 * count;
   for (std::size_t column = first; column < first + count; ++column) {
-    largest.push_back(largest_of(
-        wide.row_count(), [&](std::size_t row) { return wide.at(row, k_side) == 0.0 ? wide.at(row, column) : 0.0; }));
+    largest.push_back(largest_of(wide.row_count(), [&](std::size_t row) {
+      return side_of(wide, row) == RowSide::output ? wide.at(row, column) : 0.0;
+    }));
   }
   return largest;
 }
