@@ -11,9 +11,6 @@
 namespace monograin {
 namespace {
 
-// Least fall of the dissipation that gets a warning, over the scale; laws make smaller corrections at their
-// transitions.
-constexpr double k_worth_a_warning = 1e-6;
 // Bound of the global error of an integration with error control, over its rtol.
 constexpr double k_error_over_rtol = 100.0;
 // Bound of the round-off of an overlap over R0: an overlap is a difference of a few lengths of the order of R0.
@@ -54,7 +51,7 @@ std::optional<DissipationFall> largest_dissipation_fall(const Table& history, do
 
 std::optional<std::string> energy_warning(const Table& history, double radius, const std::string& model, double rtol) {
   const auto fall = largest_dissipation_fall(history, radius);
-  if (!fall || !(fall->share() > k_worth_a_warning)) return std::nullopt;
+  if (!fall || !(fall->share() > k_least_noted_fall)) return std::nullopt;
   const std::string where = fmt::format(
       "dissipation falls by {:.3g} J, {:.2g} of the largest energy, from t = {:.9g} s "
       "to t = {:.9g} s",

@@ -8,6 +8,10 @@
 
 namespace monograin {
 
+/// Least fall of the dissipation that gets a warning, over the scale; laws make smaller corrections at their
+/// transitions.
+inline constexpr double k_least_noted_fall = 1e-6;
+
 /// Largest fall of the dissipation (work minus stored energy) between two rows of a history. The second law forbids any
 /// fall.
 struct DissipationFall {

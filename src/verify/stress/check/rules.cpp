@@ -10,6 +10,7 @@
 #include <span>
 
 #include "catalogue.hpp"
+#include "history/energy.hpp"
 #include "reaction_cone.hpp"
 #include "scenario/integrators.hpp"
 #include "scenario/model_input.hpp"
@@ -29,8 +30,6 @@ constexpr double k_rtol_multiple_of_step = 25.0;
 constexpr double k_direct_tolerance = 1e-10;
 // Error of the direct form's work over rtol (measured: 0.0014).
 constexpr double k_direct_work = 1e-2;
-// Largest fall of the dissipation, over the work, of which models need not warn.
-constexpr double k_tolerated_loss = 1e-6;
 // Events of one step of the program; fifty times as many as scenes show.
 constexpr std::size_t k_most_events_per_step = 200;
 // Events from one end of growth to the next, if growth ends again and again.
@@ -318,7 +317,7 @@ void check_energy(const Run& run, Violations& found) {
   // A law that returns more energy than it received has to warn of it.
   const bool is_warned = run.record.creates_energy;
   const double of_run = run.integrator.is_direct() ? direct_work_tolerance(run) : own_tolerance(run);
-  const double share = is_conservative ? k_direct_tolerance : k_tolerated_loss;
+  const double share = is_conservative ? k_direct_tolerance : k_least_noted_fall;
   const double most = (share + of_run) * scale + energy_floor(run);
   double highest = 0.0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
