@@ -301,9 +301,6 @@ struct PathIntegrals {
   return a.columns()[*index].heading();
 }
 
-/// True for the columns step and row, which number the rows and are not results.
-[[nodiscard]] bool is_counter(const Column& column) { return column.name == "step" || column.name == "row"; }
-
 [[nodiscard]] std::vector<std::string> result_headings(const Table& a, const std::string& x) {
   std::vector<std::string> headings;
   for (const Column& column : a.columns()) {

@@ -259,6 +259,8 @@ class CsvText {
   if (name.empty()) return true;
   return !column.unit.empty() && name.starts_with('[') && name.ends_with(']') &&
          name.substr(1, name.size() - 2) == column.unit;
+bool is_counter(const Column& column) noexcept { return column.name == "step" || column.name == "row"; }
+
 }
 
 }  // namespace

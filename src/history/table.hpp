@@ -28,6 +28,9 @@ struct Column {
   bool operator==(const Column&) const = default;
 };
 
+/// True for the columns step and row of a history, which number its rows and are not results.
+[[nodiscard]] bool is_counter(const Column& column) noexcept;
+
 /// Rows of numbers under named columns, with header lines `key: value`. One array holds all values, row by row.
 class Table {
  public:

@@ -59,9 +59,6 @@ struct Outcome {
   return text;
 }
 
-/// True for columns that count rows, whose final and extreme values say nothing about a run.
-[[nodiscard]] bool is_counter(const Column& column) { return column.name == "step" || column.name == "row"; }
-
 /// Extreme value of a column, without undefined values. @param extreme  std::fmax or std::fmin
 [[nodiscard]] double extreme_of(const Table& history, std::size_t column, double (*extreme)(double, double)) {
   double result = k_nan;
