@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -97,12 +98,7 @@ void append_row(std::string& text, const Table& table, std::size_t row, int digi
 
 // --- reading
 
-[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept {
-  constexpr std::string_view k_blank = " \t\r";
-  const std::size_t first = text.find_first_not_of(k_blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(k_blank) - first + 1);
-}
+constexpr std::string_view k_blanks = " \t\r";
 
 /// Value of a number beyond the range of double, as strtod gives it: zero or infinity with its sign.
 [[nodiscard]] double out_of_range_value(std::string_view cell) noexcept {
@@ -133,10 +129,10 @@ void append_row(std::string& text, const Table& table, std::size_t row, int digi
 }
 
 [[nodiscard]] std::pair<std::string, std::string> parsed_header_line(std::string_view line) {
-  line = trimmed(line.substr(1));
+  line = trimmed(line.substr(1), k_blanks);
   const std::size_t colon = line.ends_with(':') ? std::min(line.find(": "), line.size() - 1) : line.find(": ");
   if (colon == std::string_view::npos) return {std::string(line), {}};
-  return {std::string(line.substr(0, colon)), std::string(trimmed(line.substr(colon + 1)))};
+  return {std::string(line.substr(0, colon)), std::string(trimmed(line.substr(colon + 1), k_blanks))};
 }
 
 /// Parser of a CSV text. It keeps cells as text until all rows are read: only then columns of numbers are known.
@@ -154,7 +150,7 @@ class CsvText {
       if (end > k_longest_line) {
         fail(fmt::format("the line is too long; expected at most {} MiB", k_longest_line >> 20U), k_longest_line + 1);
       }
-      take_line(trimmed(text.substr(0, end)));
+      take_line(trimmed(text.substr(0, end), k_blanks));
       text.remove_prefix(std::min(end + 1, text.size()));
     }
     if (columns_.empty()) fail("no row of headings");
@@ -217,7 +213,7 @@ class CsvText {
   static void for_each_cell(std::string_view line, Visit visit) {
     for (;;) {
       const std::size_t comma = line.find(',');
-      visit(trimmed(line.substr(0, comma)));
+      visit(trimmed(line.substr(0, comma), k_blanks));
       if (comma == std::string_view::npos) return;
       line.remove_prefix(comma + 1);
     }
@@ -259,11 +255,11 @@ class CsvText {
   if (name.empty()) return true;
   return !column.unit.empty() && name.starts_with('[') && name.ends_with(']') &&
          name.substr(1, name.size() - 2) == column.unit;
-bool is_counter(const Column& column) noexcept { return column.name == "step" || column.name == "row"; }
-
 }
 
 }  // namespace
+
+bool is_counter(const Column& column) noexcept { return column.name == "step" || column.name == "row"; }
 
 std::string Column::heading() const { return unit.empty() ? name : name + '[' + unit + ']'; }
 

@@ -78,10 +78,10 @@ std::string shown(std::string_view text) {
   return on_one_line(text.substr(0, length)).append(dots);
 }
 
-std::string_view trimmed(std::string_view text) noexcept {
-  const auto first = text.find_first_not_of(" \t");
+std::string_view trimmed(std::string_view text, std::string_view blanks) noexcept {
+  const auto first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 std::string in_own_words(const std::exception& error) {

@@ -18,8 +18,8 @@ namespace monograin {
 /// The words with commas between them.
 [[nodiscard]] std::string listed(std::span<const std::string_view> words);
 
-/// The text without blanks and tabs at its ends.
-[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
+/// The text without blanks at its ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text, std::string_view blanks = " \t") noexcept;
 
 /// The text with its control characters replaced, so that it cannot break a message's line.
 [[nodiscard]] std::string on_one_line(std::string_view text);
