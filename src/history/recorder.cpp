@@ -26,6 +26,15 @@ double index_of(std::string_view word, std::vector<std::string>& words) {
 
 }  // namespace
 
+std::vector<std::size_t> output_rows(const Table& history) {
+  const std::size_t side = *history.find("row");
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < history.row_count(); ++row) {
+    if (history.at(row, side) == static_cast<double>(RowSide::output)) rows.push_back(row);
+  }
+  return rows;
+}
+
 Recorder::Recorder(HybridSystem& system, const std::vector<Column>& derivatives)
     : system_(system),
       derivatives_(derivatives),

@@ -10,6 +10,9 @@
 
 namespace monograin {
 
+/// Indices of the rows of a history at output points.
+[[nodiscard]] std::vector<std::size_t> output_rows(const Table& history);
+
 /// Records what a drive reports as two tables, history and events.
 class Recorder final : public HistorySink {
  public:

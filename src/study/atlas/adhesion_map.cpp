@@ -8,6 +8,7 @@
 #include <string>
 
 #include "catalogue.hpp"
+#include "history/recorder.hpp"
 #include "history/run.hpp"
 #include "scenario/integrators.hpp"
 #include "scenario/scenario.hpp"
@@ -66,15 +67,14 @@ std::vector<FlattenedContact> flatten(double modulus_over_yield, double poisson_
   const Table& history = record.history;
   const std::string contact_class = scene.classes.front().name;
   const std::vector<double> times = history.column("time");
-  const std::vector<double> rows = history.column("row");
   const std::vector<double> apparent_radius = history.column("apparent_radius");
   const std::vector<double> overlap = history.column(contact_class + ".overlap");
   const std::vector<double> contact_radius = history.column(contact_class + ".contact_radius");
   const std::size_t regime = history.find(contact_class + ".regime").value();
 
   std::vector<FlattenedContact> contacts;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i] != static_cast<double>(RowSide::output) || times[i] == 0.0) continue;
+  for (const std::size_t i : output_rows(history)) {
+    if (times[i] == 0.0) continue;
     contacts.push_back({.modulus_over_yield = modulus_over_yield,
                         .poisson_ratio = poisson_ratio,
                         .displacement = times[i],

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/linear_algebra_clock.hpp"
+#include "history/recorder.hpp"
 #include "history/run.hpp"
 #include "scenario/document.hpp"
 #include "scenario/integrators.hpp"
@@ -63,14 +64,12 @@ bool is_state(const Column& column) {
 
 /// Rows at the output points of a history, by step of the program. Rows around events are left out: their positions
 /// differ from run to run.
-std::vector<std::vector<std::size_t>> output_rows(const Table& history) {
+std::vector<std::vector<std::size_t>> rows_of_steps(const Table& history) {
   const std::size_t step = *history.find("step");
-  const std::size_t side = *history.find("row");
   std::vector<std::vector<std::size_t>> rows;
-  for (std::size_t i = 0; i < history.row_count(); ++i) {
-    if (history.at(i, side) != static_cast<double>(RowSide::output)) continue;
-    rows.resize(static_cast<std::size_t>(history.at(i, step)));
-    rows.back().push_back(i);
+  for (const std::size_t row : output_rows(history)) {
+    rows.resize(static_cast<std::size_t>(history.at(row, step)));
+    rows.back().push_back(row);
   }
   return rows;
 }
@@ -83,8 +82,8 @@ struct CurveError {
 /// Largest difference of any column of the state, over the column's largest value. A step that a condition ends may
 /// have an output point more or less.
 CurveError curve_error(const Table& reference, const Table& other) {
-  const auto rows = output_rows(reference);
-  const auto others = output_rows(other);
+  const auto rows = rows_of_steps(reference);
+  const auto others = rows_of_steps(other);
   CurveError error;
   if (rows.size() != others.size()) return {k_nan, k_nan};
   for (std::size_t c = 0; c < reference.columns().size(); ++c) {

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "catalogue.hpp"
+#include "history/recorder.hpp"
 #include "scenario/integrators.hpp"
 #include "scene/scene.hpp"
 #include "system/resolution.hpp"

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "history/recorder.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -182,15 +183,6 @@ double change_with_overlap(const Table& table, std::size_t row, std::size_t colu
   for (std::size_t beside = row; beside-- > 0 && !has_sampled(beside);) continue;
   for (std::size_t beside = row + 1; beside < table.row_count() && !has_sampled(beside); ++beside) continue;
   return steepest * length;
-}
-
-std::vector<std::size_t> output_rows(const Table& table) {
-  std::vector<std::size_t> rows;
-  const auto side = *table.find("row");
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    if (table.at(row, side) == 0.0) rows.push_back(row);
-  }
-  return rows;
 }
 
 Distance distance_at(const Table& first, const Table& second,

@@ -45,9 +45,6 @@ struct Distance {
 [[nodiscard]] double change_with_overlap(const Table& table, std::size_t row, std::size_t column, double length,
                                          const std::function<double(double)>& value = std::identity());
 
-/// Indices of the rows at output points of a history.
-[[nodiscard]] std::vector<std::size_t> output_rows(const Table& table);
-
 /// Differences that do not count: shares of a particle's own units, as an absolute tolerance or round-off.
 struct Negligible {
   Magnification unit;          ///< the particle's units of length [m] and stress [Pa]
