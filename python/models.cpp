@@ -14,18 +14,13 @@ namespace {
 
 using namespace py::literals;
 
-std::string unit_of(Dimension dimension) {
-  const std::string_view si = dimension_info(dimension).si;
-  return si.empty() ? "-" : std::string(si);
-}
-
 py::object default_of(const std::optional<double>& value) {
   return value ? py::object(py::float_(*value)) : py::none();
 }
 
 py::dict as_python(const QuantityKey& key) {
   return py::dict("name"_a = key.name, "meaning"_a = key.meaning, "kind"_a = "quantity",
-                  "unit"_a = unit_of(key.dimension), "lower"_a = key.range.lower, "upper"_a = key.range.upper,
+                  "unit"_a = si_unit(key.dimension), "lower"_a = key.range.lower, "upper"_a = key.range.upper,
                   "lower_is_open"_a = key.range.lower_is_open, "upper_is_open"_a = key.range.upper_is_open,
                   "default"_a = default_of(key.default_value), "choices"_a = py::tuple(),
                   "is_required"_a = !key.default_value && !key.is_optional);

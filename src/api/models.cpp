@@ -6,18 +6,13 @@
 namespace monograin {
 namespace {
 
-std::string unit_of(Dimension dimension) {
-  const std::string_view si = dimension_info(dimension).si;
-  return std::string(si.empty() ? "-" : si);
-}
-
 KeyInfo info_of(const QuantityKey& key) {
-  return {std::string(key.name), std::string(key.meaning), unit_of(key.dimension), key.default_value};
+  return {std::string(key.name), std::string(key.meaning), si_unit(key.dimension), key.default_value};
 }
 
 KeyInfo info_of(const OptionKey& key) {
   KeyInfo info{std::string(key.name), std::string(key.meaning), {}, key.default_value};
-  if (key.kind == OptionKey::Kind::quantity) info.unit = unit_of(key.dimension);
+  if (key.kind == OptionKey::Kind::quantity) info.unit = si_unit(key.dimension);
   if (key.kind == OptionKey::Kind::toggle)
     info.choices = {key.default_toggle ? "true" : "false", key.default_toggle ? "false" : "true"};
   if (key.kind == OptionKey::Kind::choice) info.choices.assign(key.choices.begin(), key.choices.end());

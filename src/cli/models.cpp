@@ -27,10 +27,6 @@ struct ModelsOptions {
   std::string file;
 };
 
-std::string_view si_unit(Dimension dimension) {
-  return dimension == Dimension::none ? "-" : dimension_info(dimension).si;
-}
-
 std::string to_text(const Range& range) {
   return fmt::format("{}{}, {}{}", range.lower_is_open || std::isinf(range.lower) ? '(' : '[', range.lower, range.upper,
                      range.upper_is_open || std::isinf(range.upper) ? ')' : ']');

@@ -130,6 +130,11 @@ const DimensionInfo& dimension_info(Dimension dimension) noexcept {
   return *std::ranges::find(k_dimensions, dimension, &DimensionInfo::dimension);
 }
 
+std::string si_unit(Dimension dimension) {
+  const std::string_view si = dimension_info(dimension).si;
+  return std::string(si.empty() ? "-" : si);
+}
+
 bool is_unit_of(std::string_view text, Dimension dimension) noexcept {
   const auto& units = dimension_info(dimension).units;
   return std::ranges::find(units, text, &Unit::symbol) != units.end();

@@ -29,6 +29,9 @@ struct DimensionInfo {
 
 [[nodiscard]] const DimensionInfo& dimension_info(Dimension dimension) noexcept;
 
+/// SI unit of a dimension as headings and lists have it: "-" for a pure number.
+[[nodiscard]] std::string si_unit(Dimension dimension);
+
 /// True if a text is a unit of the dimension.
 [[nodiscard]] bool is_unit_of(std::string_view text, Dimension dimension) noexcept;
 
