@@ -36,11 +36,6 @@ void check_objections(Reading& reading, const toml::table& tree, const std::stri
   }
 }
 
-double angle_between(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  const double cross = std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
-  return std::atan2(cross, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
-}
-
 /// Reports walls that are closer to each other than the model allows.
 void check_wall_angles(Reading& reading, const toml::table& tree, const std::string& origin, const Model& model,
                        const Loading& loading) {

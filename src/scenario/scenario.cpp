@@ -175,6 +175,11 @@ std::string ScenarioTemplate::problem_of_number(const std::string& key) const {
   return fmt::format("'{}' takes no number", shown(key));
 }
 
+double angle_between(const std::array<double, 3>& a, const std::array<double, 3>& b) noexcept {
+  const double cross = std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+  return std::atan2(cross, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
+
 std::optional<Control> control_of(Step::Kind kind) noexcept {
   switch (kind) {
     case Step::Kind::displacement:

@@ -51,6 +51,9 @@ struct WallSpec {
   SourceLocation where;
 };
 
+/// Angle between two directions of any length [rad].
+[[nodiscard]] double angle_between(const std::array<double, 3>& a, const std::array<double, 3>& b) noexcept;
+
 struct Loading {
   enum class Configuration { simple, die, hydrostatic, oblique_die, walls, triaxial, strain_path };
   Configuration configuration = Configuration::simple;

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "scenario/scenario.hpp"
+
 namespace monograin {
 namespace {
 
@@ -15,11 +17,6 @@ std::array<double, 3> draw_direction(Dice& dice) {
   const double angle = dice.uniform(0.0, 2.0 * std::numbers::pi);
   const double rho = std::sqrt(1.0 - z * z);
   return {rho * std::cos(angle), rho * std::sin(angle), z};
-}
-
-double angle_between(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  const double cross = std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
-  return std::atan2(cross, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
 /// A direction at a small angle [rad] from another, for nearly parallel walls.
