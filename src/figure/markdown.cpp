@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace monograin {
+
+std::string number_or_dash(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
+}
 
 void append_markdown(std::string& text, const std::vector<MarkdownRow>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 3);

@@ -45,13 +45,9 @@ constexpr std::array<Measure, k_measures.size()> k_cells{{
     {[](const BranchComparison& line) { return line.unloading; }, 3, true},
 }};
 
-[[nodiscard]] std::string shown_number(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : std::string("-");
-}
-
 [[nodiscard]] std::string measured(const Measure& measure, const BranchComparison& line) {
   const double value = measure.value(line);
-  if (!measure.is_percent || !std::isfinite(value)) return shown_number(value, measure.digits);
+  if (!measure.is_percent || !std::isfinite(value)) return number_or_dash(value, measure.digits);
   return fmt::format("{:.1f}", 100.0 * value);
 }
 
@@ -119,8 +115,8 @@ void append_headings(const ComparisonRow& quantity, Row& headings) {
   std::vector<Row> rows{{"quantity", "computed", "reference", "difference", "relative", "remark"}};
   for (const ValueRow& row : table.rows) {
     const double reference = row.reference.value_or(k_nan);
-    rows.push_back({row.label, fmt::format("{:.5g}", row.value), shown_number(reference, 5),
-                    shown_number(row.value - reference, 3), shown_number((row.value - reference) / reference, 3),
+    rows.push_back({row.label, fmt::format("{:.5g}", row.value), number_or_dash(reference, 5),
+                    number_or_dash(row.value - reference, 3), number_or_dash((row.value - reference) / reference, 3),
                     row.remark});
   }
   return rows;
@@ -147,7 +143,7 @@ void append_headings(const ComparisonRow& quantity, Row& headings) {
     const double difference = row.value - printed_number(row);
     const bool is_rounded_to = std::abs(difference) <= k_on_the_edge * round_off_of(row.printed);
     rows.push_back({row.label, fmt::format("{:.8g}", row.value), row.printed.empty() ? "-" : row.printed,
-                    shown_number(difference, 3), row.printed.empty() ? "-" : (is_rounded_to ? "yes" : "no"),
+                    number_or_dash(difference, 3), row.printed.empty() ? "-" : (is_rounded_to ? "yes" : "no"),
                     row.remark});
   }
   return rows;

@@ -215,7 +215,7 @@ std::string_view word_of(Bound bound) {
 }
 
 /// A number to six digits; a dash if it is undefined.
-std::string shown_number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
+std::string shown_number(double value) { return number_or_dash(value, 6); }
 
 std::string with_unit(double value, const std::string& unit) {
   return unit.empty() || !std::isfinite(value) ? shown_number(value) : shown_number(value) + ' ' + unit;

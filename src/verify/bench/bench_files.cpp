@@ -26,6 +26,7 @@ using figure::ChartSeries;
 
 constexpr std::array k_errors{1e-4, 1e-6, 1e-8, 1e-10};
 constexpr int k_measured_digits = 6;
+constexpr int k_error_digits = 2;
 // Smaller errors are those of the reference, and round-off.
 constexpr double k_round_off = 1e-11;
 
@@ -72,9 +73,6 @@ constexpr std::array<const char*, 4> k_panels{"Direct form, fixed steps, IDA", "
   if (!std::isfinite(seconds)) return "-";
   return seconds < 1e-3 ? fmt::format("{:.3g} us", 1e6 * seconds) : fmt::format("{:.3g} ms", 1e3 * seconds);
 }
-[[nodiscard]] std::string number_text(double value, int digits = 2) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "-";
-}
 
 /// Least time [s] to a curve error of all integrators but "auto".
 [[nodiscard]] double best_time(const BenchScene& scene, double error) {
@@ -106,8 +104,8 @@ void append_scene(const BenchScene& scene, std::string& text) {
       row.insert(row.end(), {"-", "-", "-", "-", "-"});
     } else {
       row.insert(row.end(),
-                 {number_text(best->curve_error), number_text(best->rtol), fmt::format("{}", best->statistics.steps),
-                  fmt::format("{}", best->statistics.rhs_evaluations),
+                 {number_or_dash(best->curve_error, k_error_digits), number_or_dash(best->rtol, k_error_digits),
+                  fmt::format("{}", best->statistics.steps), fmt::format("{}", best->statistics.rhs_evaluations),
                   fmt::format("{}", std::max(0L, best->statistics.segments - 1))});
     }
     rows.push_back(std::move(row));
@@ -128,7 +126,7 @@ void append_scene(const BenchScene& scene, std::string& text) {
     if (point.integrator == integrators::k_cvode_bdf) least = std::fmin(least, point.curve_error);
   }
   const double error = std::fmax(own->curve_error, least);
-  const std::string ratio = number_text(time_to_error(scene, integrators::k_cvode_bdf, error) / own->fastest, 3);
+  const std::string ratio = number_or_dash(time_to_error(scene, integrators::k_cvode_bdf, error) / own->fastest, 3);
   return error > own->curve_error && ratio != "-" ? "> " + ratio : ratio;
 }
 
@@ -146,14 +144,14 @@ void append_auto(const std::vector<BenchScene>& scenes, std::string& text) {
   for (const BenchScene& scene : scenes) {
     MarkdownRow row{scene.name, scene.chosen};
     for (const double error : k_errors) {
-      row.push_back(number_text(time_to_error(scene, integrators::k_auto, error) / best_time(scene, error), 3));
+      row.push_back(number_or_dash(time_to_error(scene, integrators::k_auto, error) / best_time(scene, error), 3));
     }
     for (const double error : k_errors) {
-      row.push_back(number_text(
+      row.push_back(number_or_dash(
           time_to_error(scene, integrators::k_cvode_bdf, error) / time_to_error(scene, integrators::k_auto, error), 3));
     }
     row.push_back(bdf_at_own_error(scene));
-    row.push_back(number_text(
+    row.push_back(number_or_dash(
         time_to_error(scene, integrators::k_auto, 1e-6) / (static_cast<double>(scene.rows) * scene.evaluation), 3));
     rows.push_back(std::move(row));
   }
@@ -195,9 +193,9 @@ void append_constants(const std::vector<BenchScene>& scenes, std::string& text) 
     if (name == integrators::k_auto) continue;
     const Constants worst = constants_of(scenes, name);
     const bool has_tolerance = name != integrators::k_direct;
-    rows.push_back({std::string(name), has_tolerance ? number_text(worst.curve) : "-",
-                    has_tolerance ? number_text(worst.event) : "-", number_text(worst.least),
-                    fmt::format("{}", worst.faults)});
+    rows.push_back({std::string(name), has_tolerance ? number_or_dash(worst.curve, k_error_digits) : "-",
+                    has_tolerance ? number_or_dash(worst.event, k_error_digits) : "-",
+                    number_or_dash(worst.least, k_error_digits), fmt::format("{}", worst.faults)});
   }
   append_markdown(text, rows);
 }
@@ -226,7 +224,7 @@ void append_savings(const std::vector<BenchSaving>& savings, std::string& text) 
   std::vector<MarkdownRow> rows{{"saving", "scene", "time", "without", "ratio", "difference of the curves"}};
   for (const BenchSaving& saving : savings) {
     rows.push_back({saving.what, saving.scene, time_text(saving.time), time_text(saving.undone),
-                    number_text(saving.undone / saving.time, 3), number_text(saving.difference)});
+                    number_or_dash(saving.undone / saving.time, 3), number_or_dash(saving.difference, k_error_digits)});
   }
   append_markdown(text, rows);
 }
