@@ -32,8 +32,6 @@ constexpr double k_too_long = 1.0;       ///< time of a run after which tighter 
 constexpr double k_profile_time = 0.02;  ///< time for which runs are profiled [s]
 constexpr int k_evaluations = 16;        ///< timed evaluations of the law at each output point
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 double absolute_tolerance(const CheckedScenario& scenario, double rtol) {
   return rtol * scenario.numerics.atol / scenario.numerics.rtol;
 }

@@ -233,6 +233,8 @@ std::unique_ptr<HybridSystem> always_observed(std::unique_ptr<HybridSystem> syst
   return std::make_unique<AlwaysObserved>(std::move(system));
 }
 
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
 double thread_seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

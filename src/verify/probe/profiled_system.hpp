@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <memory>
 #include <stdexcept>
 
@@ -30,6 +31,9 @@ class OutOfTime : public std::runtime_error {
  public:
   OutOfTime() : std::runtime_error("out of time") {}
 };
+
+/// Time since an instant [s].
+[[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point start);
 
 /// Processor time of this thread [s]; other load on the machine does not count.
 [[nodiscard]] double thread_seconds();

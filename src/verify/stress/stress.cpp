@@ -15,6 +15,7 @@
 #include "history/staged_folder.hpp"
 #include "numerics/parallel.hpp"
 #include "scenario/text_file.hpp"
+#include "verify/probe/profiled_system.hpp"
 #include "verify/stress/check/checks.hpp"
 #include "verify/stress/draw/generator.hpp"
 #include "verify/stress/draw/scene.hpp"
@@ -30,8 +31,6 @@ constexpr const char* k_report = "report.txt";
 constexpr const char* k_generator_rule = "generator";
 // Share of the time for drawing and checking, if there are failures to shrink.
 constexpr double k_share_of_drawing = 0.75;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // --- checking scenes
 
