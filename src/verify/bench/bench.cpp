@@ -341,6 +341,55 @@ struct ScenariosOfList {
   }
 };
 
+// --- savings
+
+using System = std::unique_ptr<HybridSystem>;
+
+/// One side of a comparison: how a scenario is run.
+struct Variant {
+  CheckedScenario scenario;
+  std::string integrator = integrators::k_direct;
+  std::function<System(System)> wrap{};  ///< empty: the system is run as it is
+  bool merges_walls = true;              ///< walls that share a history are one class
+
+  [[nodiscard]] RunRecord run(double& seconds) const {
+    Scene scene = make_scene(scenario, merges_walls);
+    if (wrap) scene.system = wrap(std::move(scene.system));
+    const auto start = Clock::now();
+    RunRecord record = record_run(scene, integrator, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
+    seconds = seconds_since(start);
+    return record;
+  }
+};
+
+/// What is not computed, and the same scene with and without that saving.
+struct Saving {
+  std::string what;
+  std::string scene;
+  Variant saved;
+  Variant undone;
+};
+
+BenchSaving measure(const Saving& saving, double least_time) {
+  const auto timed = [](const Variant& variant) {
+    return Stopwatch([&variant] {
+      double seconds = 0.0;
+      static_cast<void>(variant.run(seconds));
+      return seconds;
+    });
+  };
+  double unused = 0.0;
+  const RunRecord saved = saving.saved.run(unused);
+  const RunRecord undone = saving.undone.run(unused);
+  std::vector<Stopwatch> watches{timed(saving.saved), timed(saving.undone)};
+  time_in_turn(watches, least_time);
+  return {.what = saving.what,
+          .scene = saving.scene,
+          .time = watches[0].timing().fastest,
+          .undone = watches[1].timing().fastest,
+          .difference = curve_error(saved.history, undone.history).whole};
+}
+
 }  // namespace
 
 BenchList read_bench_list(const fs::path& file) {
@@ -444,88 +493,43 @@ BenchProfile profile_scene(const CheckedScenario& scenario, const std::string& n
 }
 
 std::vector<BenchSaving> measure_savings(const BenchSettings& settings, const std::vector<BenchPair>& listed) {
-  const auto scene_of = [](std::vector<std::string> overrides) {
+  const auto scene_of = [](const std::vector<std::string>& overrides) {
     return parse_scenario(default_scenario_text(), "die.toml", overrides);
   };
-  struct Measured {
-    std::function<double()> run;
-    RunRecord record;
+  const auto beyond = [](double factor) {
+    return [factor](System system) { return sampling_beyond(std::move(system), factor); };
   };
-  using Alter = std::function<Scene(const CheckedScenario&)>;
-  const Alter as_it_is = [](const CheckedScenario& scenario) { return make_scene(scenario); };
-  const auto measure = [](const CheckedScenario& scenario, const std::string& integrator, const Alter& made) {
-    const auto once = [scenario, integrator, made](double& seconds) {
-      Scene scene = made(scenario);
-      const auto start = Clock::now();
-      RunRecord record =
-          record_run(scene, integrator, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
-      seconds = seconds_since(start);
-      return record;
-    };
-    const auto timed = [once] {
-      double seconds = 0.0;
-      static_cast<void>(once(seconds));
-      return seconds;
-    };
-    double seconds = 0.0;
-    return Measured{timed, once(seconds)};
-  };
-  std::vector<BenchSaving> savings;
-  const auto add = [&](std::string what, std::string scene, const Measured& saved, const Measured& undone) {
-    std::vector<Stopwatch> watches{Stopwatch(saved.run), Stopwatch(undone.run)};
-    time_in_turn(watches, settings.least_time);
-    savings.push_back({.what = std::move(what),
-                       .scene = std::move(scene),
-                       .time = watches[0].timing().fastest,
-                       .undone = watches[1].timing().fastest,
-                       .difference = curve_error(saved.record.history, undone.record.history).whole});
-  };
-
-  const CheckedScenario die = scene_of({});
-  const Measured direct = measure(die, integrators::k_direct, as_it_is);
-  const Measured bdf = measure(die, integrators::k_cvode_bdf, as_it_is);
-  add("walls that share a history are one class", "die, direct", direct,
-      measure(die, integrators::k_direct, [](const CheckedScenario& scenario) { return make_scene(scenario, false); }));
-  add("nothing is integrated where a state can be solved for", "die, direct / cvode-bdf", direct, bdf);
-  add("no algebraic unknowns where there is an explicit form", "die, cvode-bdf / ida", bdf,
-      measure(die, integrators::k_ida, as_it_is));
-  using System = std::unique_ptr<HybridSystem>;
-  const auto wrapped = [](const std::function<System(System)>& wrap) -> Alter {
-    return [wrap](const CheckedScenario& scenario) {
-      Scene scene = make_scene(scenario);
-      scene.system = wrap(std::move(scene.system));
-      return scene;
-    };
-  };
-  add("work in closed form where there is one", "die, direct", direct,
-      measure(die, integrators::k_direct, wrapped(always_integrated)));
-  // This saving is so small that the run with it has to be wrapped, too.
-  for (const char* integrator : {integrators::k_direct, integrators::k_cvode_bdf}) {
-    const auto sampling = [&](double factor) {
-      return measure(die, integrator,
-                     wrapped([factor](System system) { return sampling_beyond(std::move(system), factor); }));
-    };
-    add("no guard that cannot fire before the end of a step", fmt::format("die, {}", integrator), sampling(1.0),
-        sampling(10.0));
-  }
-  add("observables only at output points", "die, direct", direct,
-      measure(die, integrators::k_direct, wrapped(always_observed)));
-  add("observables only at output points", "die, cvode-bdf", bdf,
-      measure(die, integrators::k_cvode_bdf, wrapped(always_observed)));
-
   const std::string simple = "loading.configuration=simple";
+  const CheckedScenario die = scene_of({});
   const CheckedScenario plain = scene_of({simple});
   const CheckedScenario sticky = scene_of({simple, "material.surface_energy=1e-12"});
-  const Measured uniaxial = measure(plain, integrators::k_direct, as_it_is);
-  add("no adhesion where the surface energy is zero", "simple, direct, against 1e-12 J/m2", uniaxial,
-      measure(sticky, integrators::k_direct, as_it_is));
-  add("no contacts where nothing can touch", "simple, direct, against 4 walls out of reach", uniaxial,
-      measure(with_walls_out_of_reach(plain), integrators::k_direct, as_it_is));
-  for (const BenchPair& pair : listed) {
-    add(pair.what, pair.name, measure(pair.spared, integrators::k_direct, as_it_is),
-        measure(pair.without, integrators::k_direct, as_it_is));
-  }
-  return savings;
+  const auto& direct = integrators::k_direct;
+  const auto& bdf = integrators::k_cvode_bdf;
+  const char* no_guard = "no guard that cannot fire before the end of a step";
+  const char* no_observables = "observables only at output points";
+  std::vector<Saving> savings{
+      {"walls that share a history are one class", "die, direct", {die}, {.scenario = die, .merges_walls = false}},
+      {"nothing is integrated where a state can be solved for", "die, direct / cvode-bdf", {die}, {die, bdf}},
+      {"no algebraic unknowns where there is an explicit form",
+       "die, cvode-bdf / ida",
+       {die, bdf},
+       {die, integrators::k_ida}},
+      {"work in closed form where there is one", "die, direct", {die}, {die, direct, always_integrated}},
+      // This saving is so small that the run with it has to be wrapped, too.
+      {no_guard, "die, direct", {die, direct, beyond(1.0)}, {die, direct, beyond(10.0)}},
+      {no_guard, "die, cvode-bdf", {die, bdf, beyond(1.0)}, {die, bdf, beyond(10.0)}},
+      {no_observables, "die, direct", {die}, {die, direct, always_observed}},
+      {no_observables, "die, cvode-bdf", {die, bdf}, {die, bdf, always_observed}},
+      {"no adhesion where the surface energy is zero", "simple, direct, against 1e-12 J/m2", {plain}, {sticky}},
+      {"no contacts where nothing can touch",
+       "simple, direct, against 4 walls out of reach",
+       {plain},
+       {with_walls_out_of_reach(plain)}},
+  };
+  for (const BenchPair& pair : listed) savings.push_back({pair.what, pair.name, {pair.spared}, {pair.without}});
+  std::vector<BenchSaving> measured;
+  for (const Saving& saving : savings) measured.push_back(measure(saving, settings.least_time));
+  return measured;
 }
 
 double time_to_error(const BenchScene& scene, std::string_view integrator, double error) {
