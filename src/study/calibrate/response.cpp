@@ -12,7 +12,6 @@
 namespace monograin {
 namespace {
 
-constexpr double k_direct_noise = 1e-13;  // relative error of a response without time integration
 constexpr double k_series_noise = 1e-12;  // relative error of a response in series with a machine
 
 }  // namespace

@@ -11,6 +11,9 @@
 
 namespace monograin {
 
+/// Relative error of runs whose states are solved for.
+inline constexpr double k_direct_noise = 1e-13;
+
 /// Relative error of the responses.
 [[nodiscard]] double noise_of(const Calibration& calibration);
 

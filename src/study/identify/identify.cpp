@@ -8,9 +8,11 @@
 #include <cmath>
 #include <functional>
 
+#include "history/recorder.hpp"
 #include "history/run.hpp"
 #include "scenario/faults.hpp"
 #include "scene/scene.hpp"
+#include "study/calibrate/response.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -18,7 +20,6 @@ namespace {
 
 constexpr double k_fixed_instant = 1e-9;      // change of an instant with the relative change of a number, over the
                                               // duration, below which the instant is fixed
-constexpr double k_direct_error = 1e-13;      // relative error of runs whose states are solved for
 constexpr double k_integrated_error = 1e-10;  // relative error of runs that are integrated
 constexpr double k_level = 0.95;
 
@@ -186,51 +187,43 @@ std::optional<std::size_t> best_of(const std::vector<CandidateErrors>& candidate
   return static_cast<std::size_t>(best - candidates.begin());
 }
 
-}  // namespace
-
-ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentProgram& program) {
-  ProgramInformation information;
-  CheckedScenario scenario = program.scenario;
-  scenario.sensitivities.clear();
-  scenario.output = {.points = 1, .times = {}};
-  const Run first = run_scenario(scenario);
-  const Table& rough = first.record.history;
-  if (first.record.status != RunStatus::complete) {
-    information.notes.push_back("the run ends early: " + first.record.message);
-  }
-  const double duration = rough.row_count() > 0 ? rough.at(rough.row_count() - 1, *rough.find("time")) : 0.0;
-
+/// The scenario of a program, driven as a fit drives it: along the displacements of its run, unless they are what is
+/// measured.
+/// @param rough  history of that run
+/// @param notes  receives what is replaced, or cannot be
+CheckedScenario driven_scenario(const ExperimentProgram& program, const Table& rough, std::vector<std::string>& notes) {
   constexpr std::string_view k_displacement = ".displacement";
   if (program.observable.ends_with(k_displacement)) {
     const std::string_view contact_class =
         std::string_view(program.observable).substr(0, program.observable.size() - k_displacement.size());
-    if (const auto steps = displacement_steps(scenario, contact_class); !steps.empty()) {
-      information.notes.push_back(
+    if (const auto steps = displacement_steps(program.scenario, contact_class); !steps.empty()) {
+      notes.push_back(
           fmt::format("the measured quantity, {}, is prescribed in {}, which tells nothing of the parameters",
                       program.observable, named(steps)));
     }
-  } else {
-    const DisplacementProgram path(program.scenario, rough);
-    if (!path.overrides().empty()) {
-      scenario = program.scenario.variants->with(path.overrides());
-      information.notes.push_back(fmt::format(
-          "{}: replaced by the displacements to which forces or conditions lead, because a fit follows the measured "
-          "displacement",
-          named(path.replaced())));
-    } else if (!path.replaced().empty()) {
-      information.notes.push_back(
-          fmt::format("{}: forces, stresses, and ends by a condition count as measured, too; for errors of a fit along "
-                      "a measured displacement or strain, prescribe that",
-                      named(path.replaced())));
-    }
+    return program.scenario;
   }
-  scenario.sensitivities = program.scenario.sensitivities;
-  scenario.output = {.points = 0, .times = measured_instants(duration, program.points)};
-  const Run run = run_scenario(scenario);
-  information.noise = run.integrator.is_direct() ? k_direct_error : k_integrated_error;
-  const Table& history = run.record.history;
+  const DisplacementProgram path(program.scenario, rough);
+  if (!path.overrides().empty()) {
+    notes.push_back(
+        fmt::format("{}: replaced by the displacements to which forces or conditions lead, because a fit follows the "
+                    "measured displacement",
+                    named(path.replaced())));
+    return program.scenario.variants->with(path.overrides());
+  }
+  if (!path.replaced().empty()) {
+    notes.push_back(
+        fmt::format("{}: forces, stresses, and ends by a condition count as measured, too; for errors of a fit along a "
+                    "measured displacement or strain, prescribe that",
+                    named(path.replaced())));
+  }
+  return program.scenario;
+}
+
+/// Takes the rows of a run that tell of the parameters: derivatives of the measured quantity over its noise.
+void collect_rows(const Table& history, const ExperimentPlan& plan, const ExperimentProgram& program,
+                  ProgramInformation& information) {
   const std::size_t time = *history.find("time");
-  const std::size_t side = *history.find("row");
   const std::size_t y = *history.find(program.observable);
   std::vector<std::size_t> columns;
   std::vector<std::size_t> instants;  // columns of the derivatives of the time
@@ -247,8 +240,8 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
     return true;
   };
   std::vector<Eigen::RowVectorXd> rows;
-  for (std::size_t row = 0; row < history.row_count(); ++row) {
-    if (history.at(row, side) != 0.0 || history.at(row, time) == 0.0) continue;
+  for (const std::size_t row : output_rows(history)) {
+    if (history.at(row, time) == 0.0) continue;
     Eigen::RowVectorXd derivatives(static_cast<Eigen::Index>(columns.size()));
     for (std::size_t k = 0; k < columns.size(); ++k) {
       derivatives[static_cast<Eigen::Index>(k)] = history.at(row, columns[k]);
@@ -271,11 +264,33 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
   for (std::size_t row = 0; row < rows.size(); ++row) {
     information.jacobian.row(static_cast<Eigen::Index>(row)) = rows[row];
   }
+}
+
+}  // namespace
+
+ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentProgram& program) {
+  ProgramInformation information;
+  CheckedScenario scenario = program.scenario;
+  scenario.sensitivities.clear();
+  scenario.output = {.points = 1, .times = {}};
+  const Run first = run_scenario(scenario);
+  const Table& rough = first.record.history;
+  if (first.record.status != RunStatus::complete) {
+    information.notes.push_back("the run ends early: " + first.record.message);
+  }
+  const double duration = rough.row_count() > 0 ? rough.at(rough.row_count() - 1, *rough.find("time")) : 0.0;
+  scenario = driven_scenario(program, rough, information.notes);
+  scenario.sensitivities = program.scenario.sensitivities;
+  scenario.output = {.points = 0, .times = measured_instants(duration, program.points)};
+  const Run run = run_scenario(scenario);
+  information.noise = run.integrator.is_direct() ? k_direct_noise : k_integrated_error;
+  collect_rows(run.record.history, plan, program, information);
   for (const std::string& warning : run.record.warnings) information.notes.push_back(warning);
   if (information.left_out > 0) {
+    const auto kept = static_cast<std::size_t>(information.jacobian.rows());
     information.notes.push_back(
         fmt::format("{} of {} rows left out: an event passes them as a parameter changes, and they have no derivative",
-                    information.left_out, information.left_out + rows.size()));
+                    information.left_out, information.left_out + kept));
   }
   return information;
 }
