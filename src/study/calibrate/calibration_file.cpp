@@ -138,20 +138,11 @@ class CalibrationReader {
     const DataKinds kinds = kinds_of(*origin.table);
     const Keys keys = data_keys(kinds);
     const std::size_t before = faults_.size();
+    const auto has_failed = [&] { return faults_.size() > before; };
     const Section data(reading_, origin, keys);
-    const bool is_clean = faults_.size() == before;
+    const bool keys_are_known = !has_failed();
     const bool has_noise = data.has(k_noise);
-    if (has_noise && data.has("weights")) {
-      faults_.add(data.key_place("weights"),
-                  "key 'weights' does not go with 'noise': weights say how the noise is shared, noise how large it is");
-    }
-    const std::string weighting = has_noise ? std::string(k_noise) : data.text("weights");
-    if (made_.curves.empty()) made_.weighting = weighting;
-    if (weighting != made_.weighting) {
-      faults_.add(data.value_place("weights"),
-                  fmt::format("weights = \"{}\": those of the first curve are \"{}\"; expected the same for all",
-                              weighting, made_.weighting));
-    }
+    const std::string weighting = weighting_of(data);
     std::vector<ColumnSpec> specs{column_spec(reading_, data, "x", kinds.x), column_spec(reading_, data, "y", kinds.y)};
     if (weighting == "column") {
       if (!data.has_or_misspells("weight_column")) {
@@ -159,24 +150,71 @@ class CalibrationReader {
                     "weights = \"column\" needs the column; expected for example weight_column = \"weight[-]\"");
       }
       specs.push_back(column_spec(reading_, data, "weight_column", kinds.weight_column));
-    } else if (is_clean && data.has("weight_column")) {
+    } else if (keys_are_known && data.has("weight_column")) {
       faults_.add(data.key_place("weight_column"),
                   fmt::format("key 'weight_column' belongs to weights = \"column\"; this is \"{}\"", weighting));
     }
-
     const std::optional<ColumnSpec> deviations = has_noise ? noise_column_in(data) : std::nullopt;
     if (deviations) specs.push_back(*deviations);
+
+    MeasuredCurve curve;
+    const std::optional<MeasuredData> measured = read_file(data, kinds, specs, curve);
+    if (!measured) return;
+    curve.machine = machine_in(reading_, data, kinds.compliance, file_.parent_path());
+    curve.overrides = data.texts("set");
+    take_scenario(data, curve);
+    const MeasuredQuantity x = quantity(specs[0], measured->columns[0]);
+    const MeasuredQuantity y = quantity(specs[1], measured->columns[1]);
+    if (!x.observable.empty()) check_drive(specs[0], x, curve);
+    std::vector<double> weights;
+    if (!has_failed() && !y.values.empty()) {
+      if (has_noise && !deviations)
+        curve.noise = noise_in(reading_, data, dimension_of(y.si).value_or(Dimension::none));
+      if (!has_failed()) {
+        weights = has_noise ? weights_by_noise(deviations ? &*deviations : nullptr, *measured, y, curve)
+                            : weights_of(*measured, x, y, curve.file);
+      }
+    }
+    if (has_failed()) return;
+    curve.begin = made_.lines.size();
+    curve.end = curve.begin + measured->lines.size();
+    append(measured->lines, made_.lines);
+    append(weights, made_.weights);
+    add_quantity(x, specs[0], made_.x);
+    add_quantity(y, specs[1], made_.y);
+    note_reading(curve, specs, {&x, &y}, measured->columns);
+    made_.curves.push_back(std::move(curve));
+  }
+
+  /// How the data of a curve are weighted: as those of the first one.
+  std::string weighting_of(const Section& data) {
+    const bool has_noise = data.has(k_noise);
+    if (has_noise && data.has("weights")) {
+      faults_.add(data.key_place("weights"),
+                  "key 'weights' does not go with 'noise': weights say how the noise is shared, noise how large it is");
+    }
+    std::string weighting = has_noise ? std::string(k_noise) : data.text("weights");
+    if (made_.curves.empty()) made_.weighting = weighting;
+    if (weighting != made_.weighting) {
+      faults_.add(data.value_place("weights"),
+                  fmt::format("weights = \"{}\": those of the first curve are \"{}\"; expected the same for all",
+                              weighting, made_.weighting));
+    }
+    return weighting;
+  }
+
+  /// Reads the file of a curve; none if there is none.
+  std::optional<MeasuredData> read_file(const Section& data, const DataKinds& kinds,
+                                        const std::vector<ColumnSpec>& specs, MeasuredCurve& curve) {
     const std::string name = data.text("file");
-    if (name.empty()) return;
+    if (name.empty()) return {};
     const fs::path path = file_.parent_path() / name;
     const auto [text, problem] = text_of_data(name, path);
     if (!problem.empty()) {
-      return faults_.add(data.value_place("file"),
-                         fmt::format("file = \"{}\": {} ({}); expected a path relative to this file", shown(name),
-                                     problem, on_one_line(path.string())));
+      faults_.add(data.value_place("file"), fmt::format("file = \"{}\": {} ({}); expected a path relative to this file",
+                                                        shown(name), problem, on_one_line(path.string())));
+      return {};
     }
-    MeasuredCurve curve;
-    curve.begin = curve.end = made_.lines.size();
     curve.file = path.string();
     std::vector<ColumnRequest> wanted;
     for (const ColumnSpec& spec : specs) wanted.push_back(spec.request);
@@ -185,29 +223,7 @@ class CalibrationReader {
     curve.layout = std::move(measured.layout);
     curve.columns = {measured.columns[0].number, measured.columns[1].number};
     curve.left_out = std::move(measured.left_out);
-    curve.machine = machine_in(reading_, data, kinds.compliance, file_.parent_path());
-    curve.overrides = data.texts("set");
-    take_scenario(data, curve);
-    const MeasuredQuantity x = quantity(specs[0], measured.columns[0]);
-    const MeasuredQuantity y = quantity(specs[1], measured.columns[1]);
-    if (!x.observable.empty()) check_drive(specs[0], x, curve);
-    std::vector<double> weights;
-    if (faults_.size() == before && !y.values.empty()) {
-      if (has_noise && !deviations)
-        curve.noise = noise_in(reading_, data, dimension_of(y.si).value_or(Dimension::none));
-    }
-    if (faults_.size() == before && !y.values.empty()) {
-      weights = has_noise ? weights_by_noise(deviations ? &*deviations : nullptr, measured, y, curve)
-                          : weights_of(measured, x, y, curve.file);
-    }
-    if (faults_.size() > before) return;
-    curve.end += measured.lines.size();
-    append(measured.lines, made_.lines);
-    append(weights, made_.weights);
-    add_quantity(x, specs[0], made_.x);
-    add_quantity(y, specs[1], made_.y);
-    note_reading(curve, specs, {&x, &y}, measured.columns);
-    made_.curves.push_back(std::move(curve));
+    return measured;
   }
 
   /// Text of a file of data, or why there is none.
