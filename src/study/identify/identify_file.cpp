@@ -27,7 +27,7 @@ using calibration::Keys;
 using calibration::NamedScenario;
 using Kind = KeySpec::Kind;
 
-constexpr double k_most_points = 1e5;
+constexpr double k_most_instants = 1e5;
 
 /// Keys of a plan: those of a calibration file, with programs in place of data.
 Keys plan_keys(bool scenario_is_table) {
@@ -68,7 +68,7 @@ Keys program_keys() {
       {.name = "points",
        .meaning = "rows that are measured, evenly in time",
        .kind = Kind::integer,
-       .range = {.lower = 1.0, .upper = k_most_points},
+       .range = {.lower = 1.0, .upper = k_most_instants},
        .default_value = 100.0,
        .example = "100"},
       {.name = calibration::k_noise,

@@ -21,7 +21,7 @@ namespace {
 
 using Kind = KeySpec::Kind;
 
-constexpr double k_most_points = 1e6;
+constexpr double k_most_values = 1e6;
 constexpr std::array<std::string_view, 2> k_scales{"linear", "log"};
 
 /// Keys of the table that gives the values of a varied key.
@@ -39,7 +39,7 @@ std::vector<KeySpec> level_keys(const KeySpec& varied) {
       {.name = "points",
        .meaning = "number of points of a grid",
        .kind = Kind::integer,
-       .range = {.lower = 2.0, .upper = k_most_points},
+       .range = {.lower = 2.0, .upper = k_most_values},
        .default_value = 5.0},
       {.name = "scale",
        .meaning = "how the range is divided",

@@ -28,7 +28,7 @@ constexpr std::array k_errors{1e-4, 1e-6, 1e-8, 1e-10};
 constexpr int k_measured_digits = 6;
 constexpr int k_error_digits = 2;
 // Smaller errors are those of the reference, and round-off.
-constexpr double k_round_off = 1e-11;
+constexpr double k_reference_error = 1e-11;
 
 struct Line {
   std::string_view integrator;
@@ -174,8 +174,8 @@ struct Constants {
       if (point.integrator != integrator) continue;
       if (!point.fault.empty()) ++worst.faults;
       least = std::fmin(least, point.curve_error);
-      if (point.curve_error > k_round_off) worst.curve = std::max(worst.curve, point.curve_error / point.rtol);
-      if (point.event_error > k_round_off) worst.event = std::max(worst.event, point.event_error / point.rtol);
+      if (point.curve_error > k_reference_error) worst.curve = std::max(worst.curve, point.curve_error / point.rtol);
+      if (point.event_error > k_reference_error) worst.event = std::max(worst.event, point.event_error / point.rtol);
     }
     worst.least = std::isnan(worst.least) ? least : std::fmax(worst.least, least);
   }
@@ -187,7 +187,7 @@ void append_constants(const std::vector<BenchScene>& scenes, std::string& text) 
       "\n## Tolerances\n\nThe largest error over rtol of any scene and tolerance, of curves and of event times, where "
       "the error is\nabove {:g}; the largest of the scenes' least errors; and runs that do not end where the "
       "reference does.\n\n",
-      k_round_off);
+      k_reference_error);
   std::vector<MarkdownRow> rows{{"integrator", "curve", "events", "least error", "other ends"}};
   for (const std::string_view name : integrators_of(scenes)) {
     if (name == integrators::k_auto) continue;

@@ -26,7 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k_right_angle = std::numbers::pi / 2.0;
 constexpr int k_most_cycles = 50;
 // Tries to draw an admissible scene.
 constexpr int k_most_tries = 200;
@@ -52,7 +51,7 @@ void draw_cycles(Dice& dice, StressScene& scene, const ProgramBounds& bounds) {
 
 void draw_oblique_walls(Dice& dice, StressScene& scene) {
   const double least = std::max(scene.model->least_wall_angle, 1e-6);
-  if (dice.happens(0.5)) scene.oblique_angle = dice.uniform(least, k_right_angle - least);
+  if (dice.happens(0.5)) scene.oblique_angle = dice.uniform(least, std::numbers::pi / 2.0 - least);
   if (dice.happens(0.1)) scene.oblique_angle = 1.000001 * least;
   if (dice.happens(0.5)) scene.oblique_walls = 4;
   // At a small angle, the four oblique walls are close to each other.

@@ -10,7 +10,7 @@
 namespace monograin {
 namespace {
 
-constexpr std::size_t k_most_walls = 6;
+constexpr std::size_t k_most_drawn_walls = 6;
 
 std::array<double, 3> draw_direction(Dice& dice) {
   const double z = dice.uniform(-1.0, 1.0);
@@ -37,7 +37,7 @@ std::vector<std::array<double, 3>> draw_cell(Dice& dice) {
 }
 
 std::vector<std::array<double, 3>> draw_normals(Dice& dice, double least_angle) {
-  const std::size_t count = 2 + dice.below(k_most_walls - 1);
+  const std::size_t count = 2 + dice.below(k_most_drawn_walls - 1);
   const double apart = dice.happens(0.7) ? 0.6 : std::max(least_angle, 1e-3);
   std::vector<std::array<double, 3>> normals{draw_direction(dice)};
   while (normals.size() < count) {
