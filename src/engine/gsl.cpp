@@ -20,9 +20,9 @@ namespace {
 using Driver = Handle<gsl_odeiv2_driver*, gsl_odeiv2_driver_free>;
 
 constexpr double k_smallest_step = 1e-2;  // over least_progress()
-// Largest distance, over the tolerance of a step, of an implicit step from the range to which the rates at its ends
-// lead. Beyond k_doubtful the distance is corrected for the dependence of the rates on the state, and may then be
-// k_wrong: the tolerance of the curve.
+// The change over an implicit step should lie between the changes that the rates at its two ends give. Largest distance
+// from that range, over the tolerance of the step. Beyond k_doubtful the distance is corrected for the dependence of
+// the rates on the state, and may then be k_wrong: the tolerance of the curve.
 constexpr double k_doubtful = 2.0;
 constexpr double k_wrong = 1.0 / k_share_of_many;
 

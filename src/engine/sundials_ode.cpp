@@ -465,8 +465,8 @@ class SundialsOde final : public Integrator {
   }
 
   /// Evaluates the guards. At the beginning of the segment they get the state that begin() was given. Completing it
-  /// anew, from a guess that first trials have left farther on, would give an idle contact an overlap of round-off, and
-  /// pass a condition that is met within it.
+  /// again, from a guess that trial steps have moved, would give an idle contact an overlap of round-off, and miss a
+  /// condition that is met exactly there.
   static int guards(realtype xi, N_Vector y, realtype* values, void* self) noexcept {
     auto& ode = *static_cast<SundialsOde*>(self);
     ++ode.roots_.evaluations;

@@ -55,7 +55,7 @@ class LegendreSeries {
   /// How many times as long the interval could be for the series to just converge; at most 2. The last term is taken to
   /// be proportional to the length to the power of its degree.
   /// @param negligible  error of the integral over [-1, 1] that is tolerated, however small the integral
-  /// @param rounding    largest last coefficients that count as round-off if the second half of the series is flat
+  /// @param round_off   largest last coefficients that count as round-off if the second half of the series is flat
   [[nodiscard]] double reach(double negligible, double round_off = 0.0) const noexcept;
   /// Sum of the last two coefficients' magnitudes.
   [[nodiscard]] double tail() const noexcept;

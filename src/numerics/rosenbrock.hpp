@@ -17,7 +17,7 @@ class Rosenbrock4 {
     void* self = nullptr;
   };
 
-  /// @param rounding  round-off of xi; errors up to it times the rates are tolerated
+  /// @param round_off  round-off of xi; errors up to it times the rates are tolerated
   Rosenbrock4(const Equations& equations, double atol, double rtol, double round_off);
   ~Rosenbrock4();
   Rosenbrock4(const Rosenbrock4&) = delete;

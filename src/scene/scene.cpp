@@ -68,9 +68,8 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
   return names;
 }
 
-/// Depth that counts for a wall that is withdrawn by a distance, over that distance. With the whole distance,
-/// tolerances of its contacts would be of the order of what the particle bears at that depth. Also used for a wall that
-/// is pulled without adhesion.
+/// Share of a withdrawal that counts as depth. The whole distance would make the absolute tolerances of the contacts as
+/// large as their forces. Also used for a wall that is pulled without adhesion.
 constexpr double k_share_of_withdrawal = 1e-4;
 
 /// Factor within which laws predict displacement or force at a condition on another quantity. A condition that the last
