@@ -6,7 +6,6 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>

@@ -2,7 +2,6 @@
 
 #include "engine/step_work.hpp"
 
-#include <optional>
 #include <string>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,5 @@
 #include "figure/panels.hpp"
 
-#include <vector>
-
 #include <gtest/gtest.h>
 
 namespace monograin::figure::panels_test {

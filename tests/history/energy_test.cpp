@@ -1,8 +1,6 @@
 #include "history/energy.hpp"
 
 #include <array>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 

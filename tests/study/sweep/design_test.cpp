@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <string>
 
 #include "study/sweep/sweep_file.hpp"
 
