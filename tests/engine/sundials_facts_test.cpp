@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -22,6 +20,7 @@
 #include <sundials/sundials_context.hpp>
 
 #include "engine/sundials.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::sundials_facts_test {
 namespace {
@@ -31,7 +30,6 @@ using monograin::sundials_boundary::Matrix;
 using monograin::sundials_boundary::NVector;
 
 constexpr double k_rtol = 1e-8;
-constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 
 void require(int flag) {
   if (flag < 0) throw std::runtime_error("SUNDIALS set-up failed with flag " + std::to_string(flag));

@@ -17,10 +17,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "system/resolution.hpp"
+
 namespace monograin::table_test {
 namespace {
-
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A CSV file in a temporary directory of its own, gone with the test.
 class CsvFile : public ::testing::Test {
@@ -212,7 +212,7 @@ TEST_F(CsvFile, MayHaveHeadingsAndNoRows) {
 
 TEST_F(CsvFile, TakesNumbersBeyondTheRangeOfDoubleAsStrtodDoes) {
   const Table table = read("x\n1e-400\n-1e400\n");
-  EXPECT_EQ(table.column("x"), (std::vector{0.0, -std::numeric_limits<double>::infinity()}));
+  EXPECT_EQ(table.column("x"), (std::vector{0.0, -k_infinity}));
 }
 
 TEST_F(CsvFile, SaysWhichLineIsRagged) {
