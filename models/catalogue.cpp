@@ -70,13 +70,17 @@ bool is_name(std::string_view text, char mark) {
   return !text.empty() && is_letter(text.front()) && std::ranges::all_of(text, may_follow);
 }
 
+std::string rule_of_names(char mark) {
+  return mark == '_' ? "a letter, then letters, digits and '_'" : "a small letter, then small letters, digits and '-'";
+}
+
 /// What is wrong with the names in one list of a model.
 template <class Items>
 std::string fault_of_names(const Model& model, const Items& items, const std::string& what, char mark) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     const std::string_view name = items[i].name;
     const std::string of_model = "model '" + std::string(model.name) + "' has the " + what + " '" + std::string(name);
-    if (!is_name(name, mark)) return of_model + "'; expected letters, digits and '" + mark + "'";
+    if (!is_name(name, mark)) return of_model + "'; expected " + rule_of_names(mark);
     for (std::size_t k = 0; k < i; ++k) {
       if (items[k].name == name) return of_model + "' twice";
     }
@@ -98,10 +102,10 @@ std::string fault_of(const Model& model) {
   constexpr std::array<std::string_view, 8> k_tables{"title",   "model",  "particle", "material",
                                                      "loading", "output", "numerics", "sensitivities"};
   if (!is_name(model.name, '-')) {
-    return "a model is named '" + std::string(model.name) + "'; expected small letters, digits and hyphens";
+    return "a model is named '" + std::string(model.name) + "'; expected " + rule_of_names('-');
   }
   if (std::ranges::find(k_tables, model.name) != k_tables.end()) {
-    return "a model is named '" + std::string(model.name) + "', as a part of every scenario; expected another name";
+    return "'" + std::string(model.name) + "' is a key of every scenario; expected another name for a model";
   }
   if (model.bind == nullptr) return "model '" + std::string(model.name) + "' has no function `bind`";
   std::string fault = fault_of_names(model, model.material, "key", '_');

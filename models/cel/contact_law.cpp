@@ -145,10 +145,10 @@ std::vector<Coupling> couplings_of(double poisson_ratio, std::span<const Contact
       Coupling& sum = couplings.emplace_back();
       for (const Eigen::Vector3d& other : neighbour.normals) {
         const double g = &other == &normal ? self : influence_at(nonlocal::angle_between(normal, other));
-        const double c2 = std::min(1.0, raised<2>(normal.dot(other)));
-        sum.same += g * c2 * c2;
-        sum.mixed += g * c2 * (1.0 - c2);
-        sum.across += g * (1.0 - c2) * (1.0 - c2);
+        const double mu = std::min(1.0, raised<2>(normal.dot(other)));
+        sum.same += g * mu * mu;
+        sum.mixed += g * mu * (1.0 - mu);
+        sum.across += g * (1.0 - mu) * (1.0 - mu);
       }
     }
   }

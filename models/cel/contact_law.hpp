@@ -104,10 +104,10 @@ struct Advance {
 [[nodiscard]] Advance advance_of(double growth) noexcept;
 
 /// Influence of the forces on all walls of one class on a wall of another:
-///   G = sum g(theta) [1 + c2 (root - 1)] [c2 + (1 - c2) shade],   c2 = cos^2 theta
+///   G = sum g(theta) [1 + mu (root - 1)] [mu + (1 - mu) shade],   mu = cos^2 theta
 /// with the product of the roots of both compliances and the factor of neighbours (Coverage::shade).
 struct Coupling {
-  double same = 0.0, mixed = 0.0, across = 0.0;  ///< sums of g c2^2, g c2 (1 - c2), g (1 - c2)^2
+  double same = 0.0, mixed = 0.0, across = 0.0;  ///< sums of g mu^2, g mu (1 - mu), g (1 - mu)^2
 
   [[nodiscard]] double G(double root, double shade) const noexcept {
     return mixed + across * shade + root * by_root(shade);

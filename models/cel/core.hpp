@@ -35,7 +35,7 @@ struct Core {
 /// Load of a core, and its flow under that load.
 struct CoreLoad {
   Core core{};
-  Eigen::Matrix3d pushes = Eigen::Matrix3d::Zero();  ///< sum of F w n n over all walls
+  Eigen::Matrix3d pushes = Eigen::Matrix3d::Zero();  ///< sum of F phi n n over all walls
 
   // By evaluate().
   double Y = 1.0;                               ///< yield stress

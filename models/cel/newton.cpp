@@ -90,8 +90,8 @@ void Newton::solve(Particle& p, double xi, std::span<double> y) {
     if (is_polishing && (correction <= k_round_off * largest || ++polished == k_most_polishings)) break;
   }
   p.evaluate(y);
-  const bool takes_force = std::ranges::any_of(p.classes, &ClassState::is_force_controlled);
-  if (takes_force && p.centre.room(xi, p.position()) < 0.0) throw DomainError(Limit::centre_driven_away);
+  const bool has_force_control = std::ranges::any_of(p.classes, &ClassState::is_force_controlled);
+  if (has_force_control && p.centre.room(xi, p.position()) < 0.0) throw DomainError(Limit::centre_driven_away);
   if (!(now <= k_solved * std::max(largest, p.material().Y))) throw DomainError(Limit::applicability);
 }
 

@@ -156,7 +156,7 @@ void Particle::evaluate_yield(std::span<const double> y) {
   if (layout_.has_core()) {
     load_.core = core_of(y);
     load_.pushes.setZero();
-    for (const ClassState& c : classes) load_.pushes += c.contact.F * c.w() * c.spread;
+    for (const ClassState& c : classes) load_.pushes += c.contact.F * c.phi() * c.spread;
     load_.evaluate(material_.Y);
     for (std::size_t j = 0; j < shapes_.size(); ++j) flow_[j] = contraction(shapes_[j], load_.flow.C);
   }

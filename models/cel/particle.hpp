@@ -78,8 +78,8 @@ struct ClassState {
   [[nodiscard]] double position(double xi) const noexcept {
     return is_force_controlled() ? displacement : drive.value(xi);
   }
-  /// w = -c'(l)/l, load of the core per force: a force loads the core as far as it does work on the advance.
-  [[nodiscard]] double w() const noexcept { return -advance.c_l * per_l; }
+  /// phi = -c'(l)/l, load of the core per force: a force loads the core as far as it does work on the advance.
+  [[nodiscard]] double phi() const noexcept { return -advance.c_l * per_l; }
 };
 
 class Particle {

@@ -51,10 +51,10 @@ void Tangent::set(const Particle& p, bool core_flows) {
     const double grown = c.dent.zeta * c.dent.zeta - p.material().a_Y * p.material().a_Y;
     Om_by_[layout.dent(i)] = c.count * c.dent.zeta * per_square;
     if (!core_flows) continue;
-    const double w_l = -(c.w() + c.advance.c_ll) * c.per_l;
+    const double phi_l = -(c.phi() + c.advance.c_ll) * c.per_l;
     l_by_flow_[i] = p.l_by_flow(i);
     Om_by_[Lam_] -= c.count * grown * per_square * c.per_l * l_by_flow_[i];
-    pushes_by_flow_ += c.contact.F * w_l * l_by_flow_[i] * c.spread;
+    pushes_by_flow_ += c.contact.F * phi_l * l_by_flow_[i] * c.spread;
   }
 
   moving_.clear();
@@ -152,7 +152,7 @@ void Tangent::add_yield(const Particle& p, std::size_t i) {
   add(p, i, c.contact.alpha_by, -f.by_alpha, row);
   for (std::size_t j = 0; j < p.size(); ++j) {
     const ClassState& other = p.classes[j];
-    add(p, j, other.contact.F_by, -other.w() * contraction(f.by_pushes, other.spread), row);
+    add(p, j, other.contact.F_by, -other.phi() * contraction(f.by_pushes, other.spread), row);
   }
   row[Lam_] -= f.by_flow;
 }

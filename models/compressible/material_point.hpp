@@ -7,10 +7,10 @@
 /// the accumulated plastic multiplier times the length of the flow. The elastic law is linear for given moduli, so that
 /// strains and stresses follow from phi and g^p in closed form, and a prescribed lateral stress needs no unknown of its
 /// own. In an elastic phase the unknowns are constant. In a plastic phase, with the flow of the segment's potential:
-///   implicit  phi' = l' a/n, g^p' = l' Psi_s/n, f = 0, with a = -Psi_p (vm: |Psi_s|), n = |(a, Psi_s)|; of index 1 in
-///   l explicit  l' = n N/D from the derivative of f = 0; complete() takes the state back to f = 0 direct    only where
-///   the flow keeps its direction, so that f = 0 along it is one equation: all of vm, and
-///             hydrostatic loading
+/// - implicit: phi' = l' a/n, g^p' = l' Psi_s/n, f = 0; of index 1 in l. a = -Psi_p (vm: |Psi_s|), n = |(a, Psi_s)|.
+/// - explicit: l' = n N/D from the derivative of f = 0; complete() takes the state back to f = 0.
+/// - direct: only where the flow keeps its direction, so that f = 0 along it is one equation; that is all of vm, and
+///   hydrostatic loading.
 ///
 /// Modes. Between the corners of the program the elastic rates of stress are constant, so that the end of an elastic
 /// phase is known in closed form. Plastic loading ends at corners only: the elastic domain is convex, so that N would

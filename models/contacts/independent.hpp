@@ -17,7 +17,7 @@
 ///   turn(b, d), reload(b)       changes where unloading begins at d, and back there; without them unloading retraces
 ///                               loading
 ///   refuses_unloading()         advice if the law ends when a contact begins to unload; none if it does not
-///   k_is_tested                 tests compare the functions with each other: model_of() does not at every run
+///   k_is_tested                 true if tests compare the functions with each other, so that model_of() need not
 ///   k_passed_at_end             which boundaries count as passed by a step that ends at them
 ///   made_event(b)               name of the event of touching, if it is not "contact-made"
 ///   surface(b, d)               points of the surface; pressures over unit_force/R0^2

@@ -88,7 +88,7 @@ double depth_of_edge(double x) noexcept { return std::sqrt(std::max(0.0, (1.0 - 
 /// 1/width points. None if more than k_most points would be needed.
 std::optional<double> integral_on_circle(const auto& f, double branch) {
   constexpr std::size_t k_most = 1024;
-  constexpr double k_digits_in_e = 45.0;  // -ln(error), with room for f at its branch point
+  constexpr double k_log_accuracy = 45.0;  // -ln(error), with room for f at its branch point
   static const auto k_squared_sines = [] {
     std::array<double, k_most / 2 + 1> squares{};
     for (std::size_t k = 0; k < squares.size(); ++k) {
@@ -99,8 +99,8 @@ std::optional<double> integral_on_circle(const auto& f, double branch) {
   }();
   const double width = 2.0 * std::atanh(std::sqrt(branch));
   std::size_t count = 8;
-  while (count < k_most && static_cast<double>(count) * width < k_digits_in_e) count *= 2;
-  if (!(static_cast<double>(count) * width >= k_digits_in_e)) return std::nullopt;
+  while (count < k_most && static_cast<double>(count) * width < k_log_accuracy) count *= 2;
+  if (!(static_cast<double>(count) * width >= k_log_accuracy)) return std::nullopt;
   double sum = 0.0;
   for (std::size_t k = 0; k <= count / 2; ++k) {
     const double square = k_squared_sines[k * (k_most / count)];

@@ -50,9 +50,9 @@ class Path {
       const Point step = solve(point, tangent, missing);
       point -= step;
       const double size = step.norm();
-      if (size <= k_round_off * point.norm()) return point;
+      if (size <= k_last_step * point.norm()) return point;
       if (iteration > 0 && size > 0.5 * last) {
-        if (size <= 100.0 * k_round_off * point.norm()) return point;
+        if (size <= 100.0 * k_last_step * point.norm()) return point;
         return std::nullopt;
       }
       last = size;
@@ -62,6 +62,7 @@ class Path {
 
  private:
   static constexpr int k_newton_limit = 60;
+  static constexpr double k_last_step = 1e-15;  ///< over the size of the point
 
   /// Solves the equations' Jacobian bordered by one row, which keeps it regular where the path turns back. The
   /// least-norm solution leaves the centre in place along directions that no contact supports.

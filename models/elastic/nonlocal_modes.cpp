@@ -55,8 +55,14 @@ void solve(const Eigen::MatrixXd& matrix, Eigen::VectorXd& x) noexcept {
 }
 
 /// Rayleigh quotient of a matrix given by its lower half.
-double quotient(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& mode) {
-  return mode.dot(matrix.selfadjointView<Eigen::Lower>() * mode);
+double quotient(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& mode) noexcept {
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
+    double below = 0.0;
+    for (Eigen::Index i = k + 1; i < matrix.rows(); ++i) below += matrix(i, k) * mode[i];
+    sum += mode[k] * (matrix(k, k) * mode[k] + 2.0 * below);
+  }
+  return sum;
 }
 
 /// For each row of a matrix, the first row that it couples with, directly or through other rows.

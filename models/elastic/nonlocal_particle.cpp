@@ -47,11 +47,11 @@ Particle::Particle(const Settings& settings, std::span<const ContactClass> class
 
 void Particle::take_up(std::span<const Ramp> ramps, std::span<double> y) {
   for (std::size_t i = 0; i < size(); ++i) {
-    const bool was_loaded = is_force_controlled(i);
+    const bool was_by_force = is_force_controlled(i);
     const double unit = ramps[i].is_force_controlled() ? settings_.force_unit() : settings_.initial_radius;
     ramps_[i] = {ramps[i].start / unit, ramps[i].end / unit, ramps[i].control};
-    if (was_loaded && !is_force_controlled(i)) y[i] = square_of(y[i]);
-    if (!was_loaded && is_force_controlled(i)) y[i] = std::pow(std::max(y[i], 0.0), k_force_power);
+    if (was_by_force && !is_force_controlled(i)) y[i] = square_of(y[i]);
+    if (!was_by_force && is_force_controlled(i)) y[i] = std::pow(std::max(y[i], 0.0), k_force_power);
   }
 }
 

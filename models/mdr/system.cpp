@@ -59,10 +59,10 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   now_.particle.set_drives(ramps);
   for (std::size_t i = 0; i < now_.particle.size(); ++i) {
     ContactBranch branch = now_.particle.branch(i);
-    const bool is_loaded = now_.particle.is_force_controlled(i);
-    if (is_loaded) branch.resting = y[setup_->wall_index[i]];
+    const bool is_by_force = now_.particle.is_force_controlled(i);
+    if (is_by_force) branch.resting = y[setup_->wall_index[i]];
     // A driven wall that touches the fresh particle and approaches is in contact from the start, without an event.
-    const bool touches_at_once = is_loaded ? setup_->classes[i].gap == 0.0 : now_.particle.drive(i).start() == 0.0;
+    const bool touches_at_once = is_by_force ? setup_->classes[i].gap == 0.0 : now_.particle.drive(i).start() == 0.0;
     if (!now_.has_begun && touches_at_once && now_.particle.drive(i).end() > 0.0) branch.regime = Regime::elastic;
     now_.particle.set_branch(i, branch);
   }

@@ -27,7 +27,7 @@ inline constexpr double k_same_direction = 1e-9;
 /// Component of unit normals, or length of their mean, that is none. Stiffness goes with its square, which is then at
 /// the round-off of the others' stiffness.
 inline constexpr double k_no_direction = 1e-6;
-/// Net force, over the sum or the largest of the forces, that is none.
+/// Force, or net force, over the sum or the largest of the forces, that is none.
 inline constexpr double k_no_net_force = 1e-9;
 /// Stiffness, over the greatest one, that is round-off.
 inline constexpr double k_no_stiffness = 1e-12;

@@ -526,12 +526,16 @@ void add_material_and_options(Language& language, const Model& model) {
 }
 
 void add_homes(Language& language) {
+  const std::string at_top = "above the first table";
   const auto add = [&](std::span<const KeySpec> keys, const std::string& home) {
     for (const KeySpec& key : keys) {
-      if (reason_of(language.homes, key.name).empty()) language.homes.push_back({key.name, "belongs " + home});
+      if (!reason_of(language.homes, key.name).empty()) continue;
+      const bool is_own_table = key.kind == KeySpec::Kind::table && home == at_top;
+      language.homes.push_back(
+          {key.name, is_own_table ? fmt::format("is a table of its own: [{}]", key.name) : "belongs " + home});
     }
   };
-  add(language.root, "above the first table");
+  add(language.root, at_top);
   add(language.particle, "in [particle]");
   add(language.material, "in [material]");
   add(language.loading, "in [loading]");

@@ -54,7 +54,10 @@ std::vector<std::string_view> check_names(Reading& reading, const toml::table& t
     if (find_key(keys, key.str()) != nullptr) continue;
     const SourceLocation where = place_of(key.source(), place);
     std::string_view reason = reason_of(foreign, key.str());
-    if (reason.empty()) reason = reason_of(reading.homes, key.str());
+    if (reason.empty()) {
+      reason = reason_of(reading.homes, key.str());
+      if (!reason.empty()) reading.misplaced.push_back(key.str());
+    }
     if (!reason.empty()) {
       reading.faults.add(where, fmt::format("key '{}' {}", key.str(), reason));
       continue;
@@ -133,8 +136,9 @@ SourceLocation Section::value_place(std::string_view key, std::size_t entry) con
 
 void Section::check_required() {
   for (const KeySpec& spec : keys_) {
-    // A misspelt key is one fault, not two.
+    // A misspelt or misplaced key is one fault, not two.
     if (!spec.is_required || has_or_misspells(spec.name)) continue;
+    if (std::ranges::find(reading_.misplaced, spec.name) != reading_.misplaced.end()) continue;
     reading_.faults.add(origin_.place, fmt::format("key '{}' is missing in {}; expected for example {}", spec.name,
                                                    origin_.label, example_line(spec)));
   }

@@ -22,7 +22,8 @@ struct Reading {
   double initial_radius = 1.0;          ///< [m]
   bool has_units = false;               ///< some quantity of the file, no time and none in R0, is written with a unit
   std::span<const ForeignKey> homes{};  ///< tables in which keys belong that are found elsewhere
-  bool is_of_material = false;          ///< the section that is read has constants of the material
+  std::vector<std::string_view> misplaced{};  ///< such keys of the sections so far
+  bool is_of_material = false;                ///< the section that is read has constants of the material
   /// Numbers without a unit whose value in SI units is unlikely, a sentence each.
   std::vector<std::string> doubtful_lengths{};
   std::vector<std::string> doubtful_stresses{};

@@ -17,7 +17,7 @@ namespace {
 using Values = std::vector<double>;
 
 /// A handful of additions and one square root.
-constexpr double k_computed = 8 * k_epsilon;
+constexpr double k_round_off_of_sums = 8 * k_epsilon;
 
 TEST(CompareCurves, FindsNoDifferenceBetweenACurveAndItself) {
   const Values x{0, 1, 2, 1, 0};
@@ -57,8 +57,8 @@ TEST(CompareCurves, HasTheClosedFormOfAUniformErrorOfAStraightLine) {
   const auto difference = compare_curves(x, a, x, b);
   const double exact = 2.0 * k_error / std::sqrt(3.0 * k_end);
   EXPECT_NEAR(difference.area_error, exact, exact / (2.0 * k_intervals * k_intervals));
-  EXPECT_NEAR(difference.peak_error, k_error, k_computed);
-  EXPECT_NEAR(difference.l2, k_error, k_computed);
+  EXPECT_NEAR(difference.peak_error, k_error, k_round_off_of_sums);
+  EXPECT_NEAR(difference.l2, k_error, k_round_off_of_sums);
 }
 
 TEST(CompareCurves, MeasuresAbsolutelyWhereTheReferenceIsZero) {
@@ -85,7 +85,7 @@ TEST(CompareCurves, HasTheSameLargestDifferenceBothWaysForCurvesOfOneSize) {
 TEST(CompareCurves, InterpolatesTheSecondCurveAtThePlacesOfTheFirst) {
   const auto difference =
       compare_curves(Values{0, 0.25, 0.5, 1}, Values{0, 0.5, 1, 2}, Values{0, 0.4, 1}, Values{0, 0.8, 2});
-  EXPECT_LT(difference.linf, k_computed);
+  EXPECT_LT(difference.linf, k_round_off_of_sums);
 }
 
 TEST(CompareCurves, SetsPiecesOfACurveThatTurnsBackAgainstEachOther) {
@@ -94,7 +94,7 @@ TEST(CompareCurves, SetsPiecesOfACurveThatTurnsBackAgainstEachOther) {
   const Values y_a{0, 0.5, 1, 0.5, 0};
   const Values x_b{0, 0.2, 1, 0.9, 0.5};
   const Values y_b{0, 0.2, 1, 0.8, 0};
-  EXPECT_LT(compare_curves(x_a, y_a, x_b, y_b).linf, k_computed);
+  EXPECT_LT(compare_curves(x_a, y_a, x_b, y_b).linf, k_round_off_of_sums);
 }
 
 TEST(CompareCurves, CountsAPieceBackAsMuchAsOneForth) {
@@ -116,7 +116,7 @@ TEST(CompareCurves, TakesAJumpLocatedALittleApartForTheSame) {
   for (const double shift : {-1e-9, 1e-9}) {
     const Values x_b{0, 1 + shift, 1 + shift, 2};
     const auto difference = compare_curves(Values{0, 1, 1, 2}, Values{1, 1, 5, 5}, x_b, Values{1, 1, 5, 5});
-    EXPECT_LT(difference.linf, k_computed) << "shift " << shift;
+    EXPECT_LT(difference.linf, k_round_off_of_sums) << "shift " << shift;
   }
 }
 
@@ -133,7 +133,7 @@ TEST(CompareCurves, LeavesTheJumpAtATurnToNeitherPiece) {
   const Values y_a{0, 3, 2, 0};
   const Values x_b{0, 0.5, 1, 1, 0.5, 0};
   const Values y_b{0, 1.5, 3, 2, 1, 0};
-  EXPECT_LT(compare_curves(x_a, y_a, x_b, y_b).linf, k_computed);
+  EXPECT_LT(compare_curves(x_a, y_a, x_b, y_b).linf, k_round_off_of_sums);
 }
 
 TEST(CompareCurves, ComparesWhereBothAreAndSaysHowFarThatIs) {

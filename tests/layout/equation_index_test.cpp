@@ -180,7 +180,11 @@ TEST(EquationIndex, StandsOnThePageOfEveryModel) {
   for (const std::string& model : models) EXPECT_TRUE(found.contains(model)) << "no page docs/theory/" << model;
   for (const auto& [model, page] : found) {
     EXPECT_TRUE(models.contains(model)) << page << " is about no model";
-    EXPECT_FALSE(index_of(page).empty()) << page << " has no equation index";
+    const std::string text = read_text(page);
+    std::size_t equations = 0;
+    for (std::size_t at = text.find("\n$$ ("); at != std::string::npos; at = text.find("\n$$ (", at + 1)) ++equations;
+    EXPECT_GE(index_of(page).size(), std::max<std::size_t>(1, equations))
+        << page << " has an equation index with fewer rows than the page has numbered equations";
     EXPECT_TRUE(read_text(page).starts_with("(theory-" + model + ")=\n")) << page << " has no label";
   }
 }

@@ -31,6 +31,13 @@ const std::string k_models = [] {
 
 class FaultTable : public ::testing::TestWithParam<FaultRow> {};
 
+TEST(Faults, OfAMisplacedRequiredKeyAreOne) {
+  const std::string moved = std::string("[material]\n") + "youngs_modulus = \"1 GPa\"\n";
+  std::string text(k_good_scenario);
+  text.replace(text.find(moved), moved.size(), "youngs_modulus = \"1 GPa\"\n[material]\n");
+  EXPECT_EQ(faults_of(text), std::vector<std::string>{"die.toml:5:1: key 'youngs_modulus' belongs in [material]"});
+}
+
 TEST_P(FaultTable, IsReportedAtItsPlace) {
   const FaultRow& row = GetParam();
   EXPECT_EQ(faults_of(with_line(row.line, row.replacement)), row.messages) << row.replacement;
@@ -61,6 +68,10 @@ const std::vector<FaultRow> k_rows{
          "die.toml:6:1: key 'title' belongs above the first table",
          "die.toml:7:1: key 'displacement' belongs in [[loading.steps]]",
          "die.toml:8:1: key 'gap' belongs in [[loading.wall]]", "die.toml:9:1: key 'steps' belongs in [loading]"}},
+    FaultRow{"TableInATable",
+             10,
+             "configuration = \"simple\"\noutput = { points = 3 }",
+             {"die.toml:11:1: key 'output' is a table of its own: [output]"}},
     FaultRow{"MissingModel",
              2,
              "",

@@ -319,7 +319,7 @@ class Rows {
     return cells;
   }
 
-  /// Columns of all runs in the order of the runs, final values before largest ones.
+  /// Columns of all runs in the order of the runs, final values before extremes.
   [[nodiscard]] std::vector<std::string> all_columns() {
     std::vector<std::string> columns;
     const std::string* last = nullptr;

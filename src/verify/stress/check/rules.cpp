@@ -28,6 +28,10 @@ constexpr double k_rtol_multiple_of_step = 25.0;
 // Two runs of the direct form: each is polished to 1e-12 of the largest values, and work is a sum of
 // quadratures.
 constexpr double k_direct_tolerance = 1e-10;
+// Loss of dissipation of which models need not warn, over the largest energy.
+constexpr double k_tolerated_loss = 1e-6;
+// rtol at which the work of runs was counted.
+constexpr double k_counted_rtol = 1e-8;
 // Error of the direct form's work over rtol (measured: 0.0014).
 constexpr double k_direct_work = 1e-2;
 // Events of one step of the program; fifty times as many as scenes show.
@@ -317,7 +321,7 @@ void check_energy(const Run& run, Violations& found) {
   // A law that returns more energy than it received has to warn of it.
   const bool is_warned = run.record.creates_energy;
   const double of_run = run.integrator.is_direct() ? direct_work_tolerance(run) : own_tolerance(run);
-  const double share = is_conservative ? k_direct_tolerance : k_least_noted_fall;
+  const double share = is_conservative ? k_direct_tolerance : k_tolerated_loss;
   const double most = (share + of_run) * scale + energy_floor(run);
   double highest = 0.0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -407,7 +411,7 @@ void check_work(const Run& run, Violations& found) {
   // The run has failed because of its work; check_end() judges whether it may.
   if (run.record.failure == Failure::too_much_work) return;
   // The number of steps of a method of order 4 grows as rtol^(-1/4).
-  const double finer = std::pow(std::max(1.0, integrators::k_default_rtol / run.scenario.numerics.rtol), 0.25);
+  const double finer = std::pow(std::max(1.0, k_counted_rtol / run.scenario.numerics.rtol), 0.25);
   const long most = run.integrator.is_direct() ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
   const Statistics& done = run.record.statistics;
   const long work = done.rhs_evaluations + done.guard_evaluations;
