@@ -21,7 +21,7 @@ constexpr double k_last_width = 1.5;
 constexpr double k_palest = 0.55;          ///< share of white in the last run's shade
 constexpr double k_reloading_width = 2.2;  ///< of the dots, over that of the line
 /// Shares of black, and of white, in colours that come again.
-constexpr double k_darker = 0.5;
+constexpr double k_darker = 0.35;
 constexpr double k_paler = 0.5;
 
 /// Open points (circle, square, triangles, diamond, pentagon), then crosses, and only then filled points.
