@@ -11,6 +11,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -59,10 +60,38 @@ void require_poisson_ratio(double nu) {
   }
 }
 
+/// @throws std::invalid_argument for arrays whose shapes do not broadcast as in numpy
+void require_broadcast(std::initializer_list<const Numbers*> arrays) {
+  std::vector<py::ssize_t> sizes;  // of the result, from the last dimension on
+  for (const Numbers* array : arrays) {
+    for (py::ssize_t k = 0; k < array->ndim(); ++k) {
+      const py::ssize_t size = array->shape(array->ndim() - 1 - k);
+      const auto place = static_cast<std::size_t>(k);
+      if (place == sizes.size()) sizes.push_back(1);
+      if (sizes[place] == 1) sizes[place] = size;
+      if (size != 1 && size != sizes[place]) {
+        throw std::invalid_argument("the arrays do not broadcast: one has " + std::to_string(sizes[place]) +
+                                    " elements where another has " + std::to_string(size));
+      }
+    }
+  }
+}
+
+/// Makes a function of numpy arrays from a function of numbers.
+template <class Function>
+auto vectorized(Function function) {
+  return [function](const auto&... arrays) -> py::object {
+    require_broadcast({&arrays...});
+    return py::vectorize(function)(arrays...);
+  };
+}
+
 /// Makes a function of numpy arrays from a function of numbers; NaN outside the domain of the law.
 template <class... Args>
 auto elementwise(double (*function)(Args...)) {
-  return py::vectorize([function](Args... args) { return or_nan([&] { return function(args...); }); });
+  return [function](const std::conditional_t<false, Args, Numbers>&... arrays) -> py::object {
+    return vectorized([function](Args... args) { return or_nan([&] { return function(args...); }); })(arrays...);
+  };
 }
 
 /// Keeps the last law made, because parameters seldom change from one element to the next.
@@ -118,7 +147,7 @@ py::object semimech(const std::string& quantity, const std::string& configuratio
                     const Numbers& displacement) {
   const plastic::Configuration walls = plastic::configuration_named(configuration);
   LastMade<plastic::Law, 3> last;
-  return py::vectorize([&](double e, double nu, double y, double r, double d) {
+  return vectorized([&](double e, double nu, double y, double r, double d) {
     const plastic::Law& law =
         last.get({e, nu, y}, [&] { return plastic::make_semimech(plastic::make_semimech_material(e, nu, y), walls); });
     return plastic_quantity(law, quantity, y, r, d);
@@ -129,7 +158,7 @@ py::object hardening(const std::string& quantity, const std::string& configurati
                      const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
   const plastic::Configuration walls = plastic::configuration_named(configuration);
   LastMade<plastic::Law, 1> last;
-  return py::vectorize([&](double kappa, double mu, double r, double d) {
+  return vectorized([&](double kappa, double mu, double r, double d) {
     return plastic_quantity(last.get({mu}, [&] { return plastic::make_hardening(mu, walls); }), quantity, kappa, r, d);
   })(strength, exponent, radius, displacement);
 }
@@ -142,7 +171,7 @@ plastic::SimilarityRadius radius_rule(const std::string& given) {
 py::object similarity(const std::string& quantity, const std::string& rule, const Numbers& strength,
                       const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
   const plastic::SimilarityRadius radius_law = radius_rule(rule);
-  return py::vectorize([&](double kappa, double mu, double r, double d) {
+  return vectorized([&](double kappa, double mu, double r, double d) {
     return plastic_quantity(plastic::make_similarity(mu, radius_law), quantity, kappa, r, d);
   })(strength, exponent, radius, displacement);
 }
@@ -154,7 +183,7 @@ py::object similarity_pair(const std::string& quantity, const std::string& rule,
                            const Numbers& exponent, const Numbers& first_radius, const Numbers& second_radius,
                            const Numbers& argument) {
   const plastic::SimilarityRadius radius_law = radius_rule(rule);
-  return py::vectorize([&](double kappa, double mu, double first, double second, double given) {
+  return vectorized([&](double kappa, double mu, double first, double second, double given) {
     const plastic::SimilarityLaw law = plastic::make_similarity(mu, radius_law);
     const plastic::SimilarityPair pair = plastic::make_similarity_pair(first, second);
     if (quantity == "approach") return plastic::similarity_approach(law, pair, kappa, given);
@@ -188,7 +217,7 @@ nonlocal::Terms terms_named(const std::string& given) {
 py::object curved_sphere(const std::string& quantity, const std::string& terms, const Numbers& composite_modulus,
                          const Numbers& radius, const Numbers& overlap) {
   const nonlocal::LocalLaw law(terms_named(terms));
-  return py::vectorize([&](double modulus, double r, double delta) {
+  return vectorized([&](double modulus, double r, double delta) {
     if (delta <= 0.0) return 0.0;
     return or_nan([&] {
       const double s = law.signed_square(delta / r);
@@ -207,7 +236,7 @@ mdr::ElasticProfile profile_named(const std::string& given) {
 py::object mdr_elastic(const std::string& quantity, const std::string& profile, const Numbers& composite_modulus,
                        const Numbers& radius, const Numbers& overlap) {
   const mdr::ElasticProfile shape = profile_named(profile);
-  return py::vectorize([&](double modulus, double r, double delta) {
+  return vectorized([&](double modulus, double r, double delta) {
     require_positive({{"modulus", modulus}, {"radius", r}});
     return or_nan([&] {
       if (quantity == "energy") return mdr::elastic_energy(shape, modulus, r, delta);
@@ -220,7 +249,7 @@ py::object mdr_elastic(const std::string& quantity, const std::string& profile, 
 py::object mdr_plastic(const std::string& quantity, const Numbers& youngs_modulus, const Numbers& poisson_ratio,
                        const Numbers& yield_stress, const Numbers& radius, const Numbers& overlap) {
   LastMade<mdr::Material, 3> last;
-  return py::vectorize([&](double e, double nu, double y, double r, double delta) {
+  return vectorized([&](double e, double nu, double y, double r, double delta) {
     require_positive({{"youngs_modulus", e}, {"yield_stress", y}, {"radius", r}});
     require_poisson_ratio(nu);
     const mdr::Material& material = last.get({e, nu, y}, [&] { return mdr::make_material(e, nu, y); });
@@ -245,7 +274,7 @@ py::object mdr_pull_off(const std::string& quantity, const std::string& profile,
                         const Numbers& composite_modulus, const Numbers& radius, const Numbers& surface_energy) {
   const mdr::ElasticProfile shape = profile_named(profile);
   const Control prescribed = control_named(control);
-  return py::vectorize([&](double modulus, double r, double energy) {
+  return vectorized([&](double modulus, double r, double energy) {
     require_positive({{"modulus", modulus}, {"radius", r}, {"surface_energy", energy}});
     return or_nan([&] {
       const mdr::Indenter indenter = mdr::elastic_indenter(shape, r);
@@ -277,7 +306,7 @@ py::object compressible_unloading(const Numbers& stiffness, const Numbers& trans
                                   const Numbers& hertz_stiffness, const Numbers& unloading_exponent,
                                   const Numbers& stiffness_ratio, const Numbers& largest, const Numbers& displacement) {
   using namespace compressible;
-  return py::vectorize(
+  return vectorized(
       [](double k, double delta_t, double a, double k_hertz, double alpha, double beta, double dm, double d) {
         const UnloadingRule rule(UnloadingShape{alpha, beta});
         const UnloadingCurve curve = unloading_from(make_loading_law(k, delta_t, a), k_hertz, rule, dm);
@@ -289,7 +318,7 @@ py::object packing_quantity(const std::string& quantity, const Numbers& packing_
                             const Numbers& poisson_ratio, const Numbers& yield_stress,
                             const Numbers& hardening_modulus) {
   LastMade<packing::Law, 4> last;
-  return py::vectorize([&](double phi, double e, double nu, double y, double h) {
+  return vectorized([&](double phi, double e, double nu, double y, double h) {
     const packing::Law& law = last.get({e, nu, y, h}, [&] {
       packing::Parameters parameters;
       parameters.youngs_modulus = e;

@@ -31,8 +31,11 @@ def test_arguments_broadcast_and_scalars_stay_scalars():
     assert force.shape == (2, 3)
     assert force[1, 2] == laws.hertz.force(2e9, 0.01, 3e-5)
     assert isinstance(laws.hertz.force(2e9, 0.01, 3e-5), float)
-    with pytest.raises((ValueError, RuntimeError)):
+    with pytest.raises(ValueError, match="one has 2 elements where another has 3"):
         laws.hertz.force([1e9, 2e9], 0.01, [1e-5, 2e-5, 3e-5])
+    with pytest.raises(ValueError, match="do not broadcast"):
+        laws.mdr.elastic_force([1e9, 2e9], 0.01, [[1e-5, 2e-5, 3e-5]])
+    assert laws.hertz.force(np.ones((4, 1)), np.ones(3), np.full((2, 1, 1), 1e-5)).shape == (2, 4, 3)
 
 
 def test_without_contact_nothing_acts():
