@@ -373,12 +373,20 @@ class Comparison(NamedTuple):
     gaps: list[Gap]
 
 
-def compare(a: Union[Run, Table, Path], b: Union[Run, Table, Path], *, x: str = "time", y: str = "") -> Comparison:
+def compare(
+    a: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame],
+    b: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame],
+    *,
+    x: str = "time",
+    y: str = "",
+) -> Comparison:
     """Compares b with the reference a, as ``monograin compare`` does.
 
     Args:
-        a: the reference: a run, a table, the folder of a run, or a CSV file.
-        b: the run, table, folder or file that is compared with the reference.
+        a: the reference: a run, a table, the folder of a run, a CSV file, or arrays in a dict or a DataFrame, as for
+            :meth:`Table.from_columns`. Columns of different units are a gap: arrays that are compared with a run need SI
+            units, ``"axial.force[N]"``.
+        b: what is compared with the reference, as for ``a``.
         x: name of the column for the abscissa; empty: the first column.
         y: name of the column to compare; empty: every column, and the events if both are runs or their folders.
 
@@ -474,18 +482,20 @@ def _is_number(value: Any) -> bool:
         return False
 
 
-def _history(source: Union[Run, Table, Path]) -> Table:
+def _history(source: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame]) -> Table:
     if isinstance(source, Run):
         return source.history
     if isinstance(source, Table):
         return source
+    if not isinstance(source, (str, os.PathLike)):
+        return Table.from_columns(source)
     return Table.read_csv(os.path.join(source, "history.csv") if os.path.isdir(source) else source)
 
 
-def _events(source: Union[Run, Table, Path]) -> Optional[Table]:
+def _events(source: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame]) -> Optional[Table]:
     if isinstance(source, Run):
         return source.events
-    if isinstance(source, Table) or not os.path.isdir(source):
+    if not isinstance(source, (str, os.PathLike)) or not os.path.isdir(source):
         return None
     return Table.read_csv(os.path.join(source, "events.csv"))
 

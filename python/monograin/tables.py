@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
-from typing import TYPE_CHECKING, Any, Iterator, Union
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,37 @@ class Table:
         if not os.path.exists(name):
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name)
         return cls(_core.read_csv(name))
+
+    @classmethod
+    def from_columns(
+        cls, columns: Union[Mapping[str, Any], pandas.DataFrame], units: Optional[Mapping[str, str]] = None
+    ) -> Table:
+        """Makes a table of arrays, such as measured curves, to compare them with a run.
+
+        Args:
+            columns: arrays of shape (rows,) by name, as a dict or a ``pandas.DataFrame``. A name may have its unit behind
+                it (``"force[N]"``). Arrays of str become columns of words.
+            units: units by the name of a column; if None, those that :meth:`to_pandas` gives a DataFrame.
+
+        Raises:
+            ValueError: for no arrays, or arrays of different lengths.
+        """
+        known: Mapping[str, str] = getattr(columns, "attrs", {}).get("units", {}) if units is None else units
+        parts: list[_core.ColumnParts] = []
+        for heading in columns:
+            name, bracket, unit = str(heading).removesuffix("]").partition("[")
+            if not bracket or not str(heading).endswith("]"):
+                name, unit = str(heading), known.get(heading, "")
+            values = np.asarray(columns[heading])
+            labels: list[str] = []
+            if values.dtype.kind in "US" or (values.dtype.kind == "O" and all(isinstance(v, str) for v in values)):
+                words, values = np.unique(values.astype(str), return_inverse=True)
+                labels = words.tolist()
+            parts.append((name, unit, labels, values.astype(float)))
+        shapes = [values.shape for *_, values in parts]
+        if not parts or any(shape != shapes[0] or len(shape) != 1 for shape in shapes):
+            raise ValueError(f"columns of shapes {shapes}; expected columns of equal length")
+        return _of_columns([], parts)
 
     @property
     def columns(self) -> list[str]:

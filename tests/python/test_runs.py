@@ -455,3 +455,29 @@ def test_an_empty_cell_among_numbers_is_nan_and_units_tell_columns_apart(tmp_pat
     assert table["word"].tolist() == ["x", ""]
     with pytest.raises(FileNotFoundError):
         mg.Table.read_csv(tmp_path / "none.csv")
+
+
+def test_a_table_of_arrays_has_their_values_units_and_words():
+    table = mg.Table.from_columns(
+        {"x[mm]": [0.0, 1.0, np.nan], "force": np.arange(3), "regime": ["open", "elastic", "open"]}, {"force": "N"}
+    )
+    assert table.columns == ["x", "force", "regime"]
+    assert table.units == {"x": "mm", "force": "N", "regime": ""}
+    np.testing.assert_array_equal(table["x"], [0.0, 1.0, np.nan])
+    assert table["force"].tolist() == [0.0, 1.0, 2.0]
+    assert table["regime"].tolist() == ["open", "elastic", "open"]
+
+
+def test_a_table_goes_to_pandas_and_back(die):
+    pytest.importorskip("pandas")
+    history = die.run().history
+    back = mg.Table.from_columns(history.to_pandas())
+    assert back.columns == history.columns and back.units == history.units
+    for name in history.columns:
+        np.testing.assert_array_equal(back[name], history[name])
+
+
+@pytest.mark.parametrize("columns", [{}, {"a": [1.0], "b": [1.0, 2.0]}, {"a": [[1.0]]}, {"a": 1.0}])
+def test_a_table_of_unequal_arrays_is_refused(columns):
+    with pytest.raises(ValueError, match="expected columns of equal length"):
+        mg.Table.from_columns(columns)

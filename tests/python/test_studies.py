@@ -256,6 +256,9 @@ def test_a_run_does_not_differ_from_itself_and_does_from_another(die, tmp_path):
     assert mg.compare(tmp_path / "a", tmp_path / "b") == mg.compare(run, softer)
     (again,) = mg.compare(tmp_path / "a" / "history.csv", softer.history, x="axial.displacement", y="axial.force").curves
     assert again == force
+    arrays = {name: softer.history[name[:-3]] for name in ("axial.displacement[m]", "axial.force[N]")}
+    (of_arrays,) = mg.compare(run, arrays, x="axial.displacement", y="axial.force").curves
+    assert of_arrays == force
     with pytest.raises(RuntimeError):
         mg.compare(run, softer, y="axial.forse")
 
