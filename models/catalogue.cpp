@@ -74,7 +74,8 @@ std::string rule_of_names(char mark) {
   return mark == '_' ? "a letter, then letters, digits and '_'" : "a small letter, then small letters, digits and '-'";
 }
 
-/// What is wrong with the names in one list of a model.
+/// Finds a name in one list of a model that no file can have, or that is there twice.
+/// @return the fault, a sentence; empty if there is none
 template <class Items>
 std::string fault_of_names(const Model& model, const Items& items, const std::string& what, char mark) {
   for (std::size_t i = 0; i < items.size(); ++i) {

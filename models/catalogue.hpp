@@ -12,8 +12,9 @@ namespace monograin {
 /// All models this version can run, in the order in which they are listed to users.
 [[nodiscard]] std::span<const Model> model_catalogue() noexcept;
 
-/// What is wrong with the names of a model, its keys, regimes and events, or with a function that it must have; empty
-/// if nothing is. Names go into scenario files, columns and folders.
+/// Checks the names of a model, its keys, regimes and events, which go into scenario files, columns and folders, and
+/// that the model has the function `bind`.
+/// @return the first fault, a sentence; empty if there is none
 [[nodiscard]] std::string fault_of(const Model& model);
 
 /// Adds a model behind the others. To be called before a scenario is read, from one thread.

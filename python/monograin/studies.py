@@ -456,30 +456,14 @@ def _data_as_texts(source: Source) -> tuple[Source, dict[str, str]]:
 
 
 def _csv(data: Union[Run, Table, Mapping[str, Any], pandas.DataFrame]) -> str:
-    """Returns columns as a CSV text."""
+    """Returns the numbers of a table, or of arrays, as a CSV text."""
     if isinstance(data, (Run, Table)):
         return _history(data)._core.csv()
-    units = getattr(data, "attrs", {}).get("units", {})
-    columns = {}
-    for heading in data:
-        values = np.asarray(data[heading])
-        if values.dtype.kind in "OUS" and not any(map(_is_number, values.ravel().tolist())):
-            continue
-        unit = units.get(heading, "")
-        columns[f"{heading}[{unit}]" if unit else str(heading)] = values.astype(float)
-    shapes = [values.shape for values in columns.values()]
-    if any(shape != shapes[0] or len(shape) != 1 for shape in shapes):
-        raise ValueError(f"data of shapes {shapes}; expected columns of equal length")
-    rows = (["" if np.isnan(value) else repr(float(value)) for value in row] for row in zip(*columns.values()))
-    headings = ['"' + heading.replace('"', '""') + '"' for heading in columns]
-    return "".join(",".join(cells) + "\n" for cells in (headings, *rows))
-
-
-def _is_number(value: Any) -> bool:
-    try:
-        return not np.isnan(float(value))
-    except (TypeError, ValueError):
-        return False
+    columns = [part for part in Table.from_columns(data)._core.parts() if not part[2]]
+    headings = [f"{name}[{unit}]" if unit else name for name, unit, _, _ in columns]
+    quoted = ['"' + heading.replace('"', '""') + '"' for heading in headings]
+    rows = (["" if np.isnan(value) else repr(float(value)) for value in row] for row in zip(*(c[3] for c in columns)))
+    return "".join(",".join(cells) + "\n" for cells in (quoted, *rows))
 
 
 def _history(source: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame]) -> Table:

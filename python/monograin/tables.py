@@ -49,11 +49,11 @@ class Table:
     def from_columns(
         cls, columns: Union[Mapping[str, Any], pandas.DataFrame], units: Optional[Mapping[str, str]] = None
     ) -> Table:
-        """Makes a table of arrays, such as measured curves, to compare them with a run.
+        """Makes a table of arrays, such as measured curves.
 
         Args:
             columns: arrays of shape (rows,) by name, as a dict or a ``pandas.DataFrame``. A name may have its unit behind
-                it (``"force[N]"``). Arrays of str become columns of words.
+                it (``"force[N]"``). Arrays without a number become columns of words.
             units: units by the name of a column; if None, those that :meth:`to_pandas` gives a DataFrame.
 
         Raises:
@@ -67,7 +67,7 @@ class Table:
                 name, unit = str(heading), known.get(heading, "")
             values = np.asarray(columns[heading])
             labels: list[str] = []
-            if values.dtype.kind in "US" or (values.dtype.kind == "O" and all(isinstance(v, str) for v in values)):
+            if values.dtype.kind in "OUS" and not any(map(_is_number, values.ravel().tolist())):
                 words, values = np.unique(values.astype(str), return_inverse=True)
                 labels = words.tolist()
             parts.append((name, unit, labels, values.astype(float)))
@@ -151,3 +151,10 @@ class Table:
 
 def _of_columns(header: list[tuple[str, str]], columns: list[_core.ColumnParts]) -> Table:
     return Table(_core.table_of(header, columns))
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        return not np.isnan(float(value))
+    except (TypeError, ValueError):
+        return False

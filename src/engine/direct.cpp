@@ -16,7 +16,7 @@ namespace {
 
 // A remainder of the step up to this share of a piece is merged into the piece.
 constexpr double k_rest = 0.25;
-// Pieces up to this length (step coordinates) cannot be told from round-off.
+// Pieces up to this length (step coordinates) may be round-off.
 constexpr double k_tiny = 1e-10;
 // Largest and smallest ratio of a piece's length to the length before, and the safety factor on the predicted length.
 constexpr double k_most_growth = 2.0;

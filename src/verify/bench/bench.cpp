@@ -362,7 +362,7 @@ struct Variant {
   }
 };
 
-/// What is not computed, and the same scene with and without that saving.
+/// A saving: `what` a run leaves out, and a scene to be timed with and without it.
 struct Saving {
   std::string what;
   std::string scene;
