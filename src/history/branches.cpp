@@ -22,7 +22,7 @@ constexpr std::size_t k_least_line = 3;        ///< least number of rows beside 
 constexpr double k_equal_steps = 0.05;         ///< largest difference of equal steps of x, over the step
 constexpr double k_doubt_of_row = 4.0;   ///< error of the row where lines meet, over the difference of their steps
 constexpr std::size_t k_turn_rows = 10;  ///< by which the row of the turn may be off
-constexpr double k_least_turn = 2e-3;    ///< least turn over the range of x
+constexpr double k_least_turn = 2e-3;    ///< least turn of few rows or among noise, over the range of x
 
 [[nodiscard]] XyCurve up_to(const XyCurve& loading, double x) {
   const auto end = std::ranges::upper_bound(loading.x, x);
@@ -112,7 +112,10 @@ struct Line {
 
 }  // namespace
 
-double noise_in(std::span<const double> x) {
+namespace {
+
+/// Lengths of the paths between two turns that may be noise, in units of x.
+[[nodiscard]] std::vector<double> short_runs_of(std::span<const double> x) {
   std::vector<double> short_runs;
   std::size_t begin = 0;
   for (std::size_t k = 1; k < x.size(); ++k) {
@@ -121,6 +124,13 @@ double noise_in(std::span<const double> x) {
     if (k - begin <= k_short_run && k + 1 < x.size() && begin > 0) short_runs.push_back(std::abs(x[k] - x[begin]));
     begin = k;
   }
+  return short_runs;
+}
+
+}  // namespace
+
+double noise_in(std::span<const double> x) {
+  std::vector<double> short_runs = short_runs_of(x);
   if (short_runs.size() < k_least_short_runs) return 0.0;
   const auto middle = short_runs.begin() + static_cast<std::ptrdiff_t>(short_runs.size() / 2);
   std::ranges::nth_element(short_runs, middle);
@@ -129,10 +139,15 @@ double noise_in(std::span<const double> x) {
 
 namespace {
 
-/// Least distance by which x has to come back for a turn that is not noise, in units of x.
+/// Least distance by which x has to come back for a turn that is not noise, in units of x. The unloading of a stiff
+/// particle may be short: where x has no noise, only its few short paths are left out.
 [[nodiscard]] double least_turn(std::span<const double> x) {
   const auto [lowest, highest] = std::ranges::minmax(x);
-  return std::max(k_least_turn * (highest - lowest), k_noise_factor * noise_in(x));
+  const double least = k_least_turn * (highest - lowest);
+  const std::vector<double> short_runs = short_runs_of(x);
+  if (short_runs.size() >= k_least_short_runs) return std::max(least, k_noise_factor * noise_in(x));
+  const double longest = short_runs.empty() ? 0.0 : std::ranges::max(short_runs);
+  return std::max(k_same_number * (highest - lowest), std::min(least, longest));
 }
 
 /// Row next to a turn from which a line to the turn is drawn.

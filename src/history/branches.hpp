@@ -33,8 +33,9 @@ struct Excursion {
 
 /// Rows at which x turns, with the first and the last row. Between them x is monotone apart from noise.
 ///
-/// Paths of at most two rows between turns are noise if there are at least three of them. A turn counts if x comes back
-/// by more than six times the median of their lengths, and by more than 0.2 % of its range.
+/// Paths of at most two rows between turns are noise if there are at least three of them. A turn counts then if x comes
+/// back by more than six times the median of their lengths, and by more than 0.2 % of its range. Without noise every
+/// turn counts, but for paths of at most two rows and at most 0.2 % of the range.
 [[nodiscard]] std::vector<std::size_t> turning_points(std::span<const double> x);
 
 /// Noise of x: the median length of paths of at most two rows between turns; 0 if there are less than three of them.

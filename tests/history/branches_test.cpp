@@ -177,6 +177,14 @@ TEST(TurningPoints, OfExactDataAreItsReversals) {
   EXPECT_EQ(turning_points(Values{1, 1, 1}), (std::vector<std::size_t>{0, 2}));
 }
 
+TEST(TurningPoints, OfExactDataAreThoseOfAStiffUnloadingToo) {
+  // A stiff particle comes back by little. One reading that lies 1e-4 off is no turn.
+  EXPECT_EQ(turning_points(through({0, 1, 0.9995, 1.5}, 10, 0.0)), (std::vector<std::size_t>{0, 10, 20, 30}));
+  Values x = through({0, 1}, 10, 0.0);
+  x.insert(x.begin() + 6, x[5] - 1e-4);
+  EXPECT_EQ(turning_points(x), (std::vector<std::size_t>{0, 11}));
+}
+
 TEST(TurningPoints, AreNotThoseOfNoise) {
   // Ramps, a hold, and a small reload; the noise is larger than the steps of all of them.
   const Values places{0, 1, 1, 0.8, 0.9, 0.2};
