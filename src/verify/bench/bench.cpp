@@ -6,7 +6,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <random>
 #include <utility>
 
 #include "engine/linear_algebra_clock.hpp"
@@ -26,10 +28,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr double k_tightest = 1e-13;     ///< rtol of references
+constexpr std::array k_reference_tolerances{1e-11, 1e-12, 1e-13};
 constexpr int k_rounds = 50;             ///< rounds in which all runs take turns
+constexpr double k_long_repeats = 0.25;  ///< time after which a run is not repeated for its number of runs [s]
 constexpr double k_too_long = 1.0;       ///< time of a run after which tighter tolerances are left out [s]
-constexpr double k_profile_time = 0.02;  ///< time for which runs are profiled [s]
+constexpr int k_profiled_runs = 20;      ///< of which the fastest counts: other load has disturbed it least
 constexpr int k_evaluations = 16;        ///< timed evaluations of the law at each output point
 
 double absolute_tolerance(const CheckedScenario& scenario, double rtol) {
@@ -39,13 +42,13 @@ double absolute_tolerance(const CheckedScenario& scenario, double rtol) {
 RunRecord run_once(const CheckedScenario& scenario, const std::string& integrator, double rtol,
                    double* seconds = nullptr) {
   Scene scene = make_scene(scenario);
-  const auto start = Clock::now();
+  const double start = thread_seconds();
   RunRecord record = record_run(scene, integrator, {rtol, absolute_tolerance(scenario, rtol)}, scenario.output);
-  if (seconds != nullptr) *seconds = seconds_since(start);
+  if (seconds != nullptr) *seconds = thread_seconds() - start;
   return record;
 }
 
-/// Time of one run [s], with recording, without set-up of the scene.
+/// Processor time of one run [s], with recording, without set-up of the scene.
 double time_once(const CheckedScenario& scenario, const std::string& integrator, double rtol) {
   double seconds = 0.0;
   static_cast<void>(run_once(scenario, integrator, rtol, &seconds));
@@ -77,6 +80,12 @@ struct CurveError {
   double end = 0.0;
 };
 
+/// Difference of two values of a column: none where both are undefined, infinite where one is.
+double difference_of(double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b) ? 0.0 : k_infinity;
+  return std::abs(a - b);
+}
+
 /// Largest difference of any column of the state, over the column's largest value. A step that a condition ends may
 /// have an output point more or less.
 CurveError curve_error(const Table& reference, const Table& other) {
@@ -96,12 +105,11 @@ CurveError curve_error(const Table& reference, const Table& other) {
     if (largest == 0.0) continue;
     for (std::size_t step = 0; step < rows.size(); ++step) {
       for (std::size_t j = 0; j < std::min(rows[step].size(), others[step].size()); ++j) {
-        const double difference = std::abs(reference.at(rows[step][j], c) - other.at(others[step][j], *other_c));
-        if (!std::isnan(difference)) worst = std::max(worst, difference);
+        worst = std::max(worst, difference_of(reference.at(rows[step][j], c), other.at(others[step][j], *other_c)));
       }
     }
     const double last =
-        std::abs(reference.at(reference.row_count() - 1, c) - other.at(other.row_count() - 1, *other_c));
+        difference_of(reference.at(reference.row_count() - 1, c), other.at(other.row_count() - 1, *other_c));
     error.whole = std::max(error.whole, std::max(worst, last) / largest);
     error.end = std::max(error.end, last / largest);
   }
@@ -182,9 +190,15 @@ class Stopwatch {
   /// @param run  makes one run and returns its time [s]
   explicit Stopwatch(std::function<double()> run) : run_(std::move(run)) {}
 
-  /// Repeats the run until all runs so far have taken `least_time` [s] together, but makes at least one.
-  void run_for(double least_time) {
-    while (times_.empty() || total_ < least_time) {
+  /// Makes at least one run, and repeats it until a share of what the settings demand is done: their time and their
+  /// number of runs, which counts only as long as the runs take less than k_long_repeats together.
+  void run_for(const BenchSettings& settings, double share) {
+    const double least_runs = share * static_cast<double>(settings.least_runs);
+    const auto is_short = [&] {
+      return total_ < share * settings.least_time ||
+             (static_cast<double>(times_.size()) < least_runs && total_ < share * k_long_repeats);
+    };
+    while (times_.empty() || is_short()) {
       times_.push_back(run_());
       total_ += times_.back();
     }
@@ -202,11 +216,15 @@ class Stopwatch {
   double total_ = 0.0;
 };
 
-/// Times all runs that are to be compared, in turns of a short time each: if the machine is slower for a while, it is
-/// so for all of them.
-void time_in_turn(std::vector<Stopwatch>& watches, double least_time) {
+/// Times all runs that are to be compared, in rounds, each in another order: if the machine is slower for a while, it
+/// is so for all of them, and none always follows another.
+void time_in_turn(std::vector<Stopwatch>& watches, const BenchSettings& settings) {
+  std::vector<std::size_t> order(watches.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::minstd_rand random;
   for (int round = 1; round <= k_rounds; ++round) {
-    for (Stopwatch& watch : watches) watch.run_for(least_time * round / k_rounds);
+    std::ranges::shuffle(order, random);
+    for (const std::size_t i : order) watches[i].run_for(settings, static_cast<double>(round) / k_rounds);
   }
 }
 
@@ -218,13 +236,30 @@ struct Standard {
   RunRecord record;
 };
 
-/// Runs by two different methods at the tightest tolerance: the direct form and a one-step method or, if the model has
-/// no direct form, a one-step and a multistep method.
+/// Two runs by different methods that agree best: by the direct form and a one-step method or, if the model has no
+/// direct form, by a one-step and a multistep method. A method is not always best at the tightest tolerance.
 std::pair<Standard, Standard> standards_of(const CheckedScenario& scenario) {
   const bool is_solvable = make_scene(scenario).system->is_solvable();
-  const std::string first = is_solvable ? integrators::k_direct : integrators::k_arkode_erk;
-  const std::string second = is_solvable ? integrators::k_arkode_erk : integrators::k_cvode_adams;
-  return {{first, run_once(scenario, first, k_tightest)}, {second, run_once(scenario, second, k_tightest)}};
+  const auto runs_of = [&](const char* integrator) {
+    std::vector<Standard> runs;
+    for (const double rtol : k_reference_tolerances) runs.push_back({integrator, run_once(scenario, integrator, rtol)});
+    return runs;
+  };
+  const std::vector<Standard> firsts = runs_of(is_solvable ? integrators::k_direct : integrators::k_arkode_erk);
+  const std::vector<Standard> seconds = runs_of(is_solvable ? integrators::k_arkode_erk : integrators::k_cvode_adams);
+  const Standard* first = &firsts.back();
+  const Standard* second = &seconds.back();
+  double least = k_infinity;
+  for (const Standard& one : firsts) {
+    for (const Standard& other : seconds) {
+      const double difference = curve_error(one.record.history, other.record.history).whole;
+      if (!(difference < least)) continue;
+      least = difference;
+      first = &one;
+      second = &other;
+    }
+  }
+  return {*first, *second};
 }
 
 /// Measures a point except for its repeated times.
@@ -355,9 +390,9 @@ struct Variant {
   [[nodiscard]] RunRecord run(double& seconds) const {
     Scene scene = make_scene(scenario, merges_walls);
     if (wrap) scene.system = wrap(std::move(scene.system));
-    const auto start = Clock::now();
+    const double start = thread_seconds();
     RunRecord record = record_run(scene, integrator, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
-    seconds = seconds_since(start);
+    seconds = thread_seconds() - start;
     return record;
   }
 };
@@ -370,7 +405,7 @@ struct Saving {
   Variant undone;
 };
 
-BenchSaving measure(const Saving& saving, double least_time) {
+BenchSaving measure(const Saving& saving, const BenchSettings& settings) {
   const auto timed = [](const Variant& variant) {
     return Stopwatch([&variant] {
       double seconds = 0.0;
@@ -382,7 +417,7 @@ BenchSaving measure(const Saving& saving, double least_time) {
   const RunRecord saved = saving.saved.run(unused);
   const RunRecord undone = saving.undone.run(unused);
   std::vector<Stopwatch> watches{timed(saving.saved), timed(saving.undone)};
-  time_in_turn(watches, least_time);
+  time_in_turn(watches, settings);
   return {.what = saving.what,
           .scene = saving.scene,
           .time = watches[0].timing().fastest,
@@ -425,25 +460,24 @@ BenchScene measure_scene(const CheckedScenario& scenario, const BenchSettings& s
   const auto [first, second] = standards_of(scenario);
   BenchScene result{.name = scenario.name,
                     .title = scenario.title,
-                    .chosen = {},
+                    .chosen = choose_integrator(integrators::k_auto, *make_scene(scenario).system).used,
                     .reference = first.integrator,
                     .check = second.integrator,
                     .points = {}};
   result.agreement = curve_error(first.record.history, second.record.history).whole;
   result.rows = first.record.history.row_count();
   Stopwatch setup([&] {
-    const auto start = Clock::now();
+    const double start = thread_seconds();
     static_cast<void>(make_scene(scenario));
-    return seconds_since(start);
+    return thread_seconds() - start;
   });
-  setup.run_for(settings.least_time);
+  setup.run_for(settings, 1.0);
   result.setup = setup.timing().fastest;
   const Scene scene = make_scene(scenario);
   std::vector<Stopwatch> watches;
   for (const std::string& name : names) {
     for (const double rtol : tolerances) {
       const IntegratorChoice choice = choose_integrator(name, *scene.system);
-      if (name == integrators::k_auto) result.chosen = choice.used;
       if (choice.used == integrators::k_direct && !scene.system->is_solvable()) break;
       const Standard& standard = choice.used == first.integrator ? second : first;
       result.points.push_back(measure_point(scenario, name, choice.used, rtol, standard));
@@ -452,7 +486,7 @@ BenchScene measure_scene(const CheckedScenario& scenario, const BenchSettings& s
       if (result.points.back().fastest > k_too_long) break;
     }
   }
-  time_in_turn(watches, settings.least_time);
+  time_in_turn(watches, settings);
   for (std::size_t i = 0; i < watches.size(); ++i) {
     const Timing timing = watches[i].timing();
     result.points[i].fastest = timing.fastest;
@@ -464,12 +498,8 @@ BenchScene measure_scene(const CheckedScenario& scenario, const BenchSettings& s
 
 BenchProfile profile_scene(const CheckedScenario& scenario, const std::string& name) {
   const std::string integrator = choose_integrator(name, *make_scene(scenario).system).used;
-  BenchProfile profile{.scene = scenario.name, .integrator = integrator};
-  double least = k_infinity;
-  std::vector<Stopwatch> watches;
-  watches.emplace_back([&] { return time_once(scenario, integrator, scenario.numerics.rtol); });
-  // The fastest profiled run is kept, as the fastest run is without profile: other load has disturbed it least.
-  watches.emplace_back([&] {
+  BenchProfile profile{.scene = scenario.name, .integrator = integrator, .total = k_infinity};
+  for (int i = 0; i < k_profiled_runs; ++i) {
     SystemProfile system;
     const LinearAlgebraClock clock;
     Scene scene = make_scene(scenario);
@@ -477,18 +507,14 @@ BenchProfile profile_scene(const CheckedScenario& scenario, const std::string& n
     const auto start = Clock::now();
     static_cast<void>(record_run(scene, integrator, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output));
     const double seconds = seconds_since(start);
-    if (seconds < least) {
-      least = seconds;
-      profile.law = system.law.seconds;
-      profile.law_calls = system.law.calls;
-      profile.guards = system.guards.seconds;
-      profile.recording = system.recording.seconds;
-      profile.linear_algebra = clock.seconds();
-    }
-    return seconds;
-  });
-  time_in_turn(watches, k_profile_time);
-  profile.total = watches[0].timing().fastest;
+    if (!(seconds < profile.total)) continue;
+    profile.total = seconds;
+    profile.law = system.law.seconds;
+    profile.law_calls = system.law.calls;
+    profile.guards = system.guards.seconds;
+    profile.recording = system.recording.seconds;
+    profile.linear_algebra = clock.seconds();
+  }
   return profile;
 }
 
@@ -528,7 +554,7 @@ std::vector<BenchSaving> measure_savings(const BenchSettings& settings, const st
   };
   for (const BenchPair& pair : listed) savings.push_back({pair.what, pair.name, {pair.spared}, {pair.without}});
   std::vector<BenchSaving> measured;
-  for (const Saving& saving : savings) measured.push_back(measure(saving, settings.least_time));
+  for (const Saving& saving : savings) measured.push_back(measure(saving, settings));
   return measured;
 }
 

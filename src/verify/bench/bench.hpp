@@ -16,6 +16,7 @@ struct BenchSettings {
   std::vector<std::string> integrators{};  ///< "auto" and the names of integrators; empty: all
   std::vector<double> tolerances{};        ///< relative ones, from loose to tight; empty: 1e-2 to 1e-13
   double least_time = 0.05;                ///< a run is repeated for at least this time [s]
+  std::size_t least_runs = 20;             ///< and so many times, except if these runs take long
 };
 
 /// Errors and times of one integrator at one tolerance. Errors are nan if the run does not end as the reference does.
@@ -27,8 +28,8 @@ struct BenchPoint {
   double curve_error = 0.0;
   double end_error = 0.0;    ///< the same error at the last row
   double event_error = 0.0;  ///< largest error of an event's time, over the whole time; nan if there are other events
-  double fastest = 0.0;      ///< shortest time of a run [s], with recording, without set-up of the scene
-  double median = 0.0;       ///< median time of a run [s]
+  double fastest = 0.0;      ///< shortest processor time of a run [s], with recording, without set-up of the scene
+  double median = 0.0;       ///< median processor time of a run [s]
   Statistics statistics;
   std::string fault;  ///< why the run has no errors; empty if it has
 };
@@ -47,7 +48,7 @@ struct BenchScene {
   std::vector<BenchPoint> points;
 };
 
-/// Shares of the time of one run [s]; the rest of the total is the integrator's own.
+/// Shares of the time of one run [s], clocks included; the rest of the total is the integrator's own.
 struct BenchProfile {
   std::string scene;
   std::string integrator;

@@ -85,10 +85,10 @@ constexpr std::array<const char*, 4> k_panels{"Direct form, fixed steps, IDA", "
 
 void append_scene(const BenchScene& scene, std::string& text) {
   text += fmt::format(
-      "\n## {}\n\n{}: {} rows, set-up {}, one evaluation of the law {}. Errors are against `{}`, its own against `{}`\n"
+      "\n## {}\n\n{}{} rows, set-up {}, one evaluation of the law {}. Errors are against `{}`, its own against `{}`\n"
       "(which agree to {:.1g}); `auto` is `{}`.\n\n",
-      scene.name, scene.title, scene.rows, time_text(scene.setup), time_text(scene.evaluation), scene.reference,
-      scene.check, scene.agreement, scene.chosen);
+      scene.name, scene.title.empty() ? "" : scene.title + ": ", scene.rows, time_text(scene.setup),
+      time_text(scene.evaluation), scene.reference, scene.check, scene.agreement, scene.chosen);
   std::vector<MarkdownRow> rows{{"integrator"}};
   for (const double error : k_errors) rows.front().push_back(fmt::format("time at {:.0e}", error));
   rows.front().insert(rows.front().end(), {"least error", "at rtol", "steps", "right-hand sides", "restarts"});
@@ -130,6 +130,24 @@ void append_scene(const BenchScene& scene, std::string& text) {
   return error > own->curve_error && ratio != "-" ? "> " + ratio : ratio;
 }
 
+/// Median and largest difference of the times of "auto" and of the integrator that it chooses, which are the same runs;
+/// nan if these were not both measured.
+[[nodiscard]] std::pair<double, double> noise_of(const std::vector<BenchScene>& scenes) {
+  std::vector<double> differences;
+  for (const BenchScene& scene : scenes) {
+    for (const BenchPoint& point : scene.points) {
+      if (point.integrator != integrators::k_auto) continue;
+      for (const BenchPoint& other : scene.points) {
+        if (other.integrator != scene.chosen || other.rtol != point.rtol) continue;
+        differences.push_back(std::max(point.fastest, other.fastest) / std::min(point.fastest, other.fastest) - 1.0);
+      }
+    }
+  }
+  if (differences.empty()) return {k_nan, k_nan};
+  std::ranges::sort(differences);
+  return {differences[differences.size() / 2], differences.back()};
+}
+
 void append_auto(const std::vector<BenchScene>& scenes, std::string& text) {
   text +=
       "\n## `auto`\n\nRatios of times. Columns \"at\": `auto` over the fastest of the other integrators at that error. "
@@ -156,9 +174,16 @@ void append_auto(const std::vector<BenchScene>& scenes, std::string& text) {
     rows.push_back(std::move(row));
   }
   append_markdown(text, rows);
+  const auto [middle, largest] = noise_of(scenes);
+  if (std::isnan(largest)) return;
+  text += fmt::format(
+      "\n`auto` and the integrator that it chooses make the same runs. Their times differ by {:.1f} % in the median "
+      "and "
+      "by {:.1f} % at\nmost: so much of a ratio is noise.\n",
+      100.0 * middle, 100.0 * largest);
 }
 
-/// Largest errors of an integrator over all scenes.
+/// Largest errors of an integrator over all scenes. No error is known better than the references agree.
 struct Constants {
   double curve = 0.0;  ///< error over rtol, where the error is not round-off
   double event = 0.0;
@@ -173,7 +198,7 @@ struct Constants {
     for (const BenchPoint& point : scene.points) {
       if (point.integrator != integrator) continue;
       if (!point.fault.empty()) ++worst.faults;
-      least = std::fmin(least, point.curve_error);
+      least = std::fmin(least, std::max(point.curve_error, scene.agreement));
       if (point.curve_error > k_reference_error) worst.curve = std::max(worst.curve, point.curve_error / point.rtol);
       if (point.event_error > k_reference_error) worst.event = std::max(worst.event, point.event_error / point.rtol);
     }
@@ -262,6 +287,38 @@ void append_savings(const std::vector<BenchSaving>& savings, std::string& text) 
 
 using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
 
+/// Gives an axis ends at powers of ten that enclose all values of the chart along it.
+void enclose(const figure::Chart& chart, std::vector<double> ChartSeries::*values, figure::ChartAxis& axis) {
+  double lowest = std::log10(axis.lowest.value_or(k_infinity));
+  double highest = -k_infinity;
+  for (const figure::ChartPanel& panel : chart.panels) {
+    for (const ChartSeries& series : panel.series) {
+      for (const double value : series.*values) {
+        if (!(value > 0.0 && std::isfinite(value))) continue;
+        lowest = std::min(lowest, std::floor(std::log10(value)));
+        highest = std::max(highest, std::ceil(std::log10(value)));
+      }
+    }
+  }
+  if (!std::isfinite(highest)) return;
+  axis.lowest = std::pow(10.0, lowest);
+  axis.highest = std::pow(10.0, std::max(highest, lowest + 1.0));
+}
+
+/// Leaves out empty panels and gives the others the same axes, so that they can be compared.
+void compare_panels(figure::Chart& chart) {
+  std::erase_if(chart.panels, [](const figure::ChartPanel& panel) { return panel.series.empty(); });
+  if (chart.panels.empty()) return;
+  figure::ChartAxis x = chart.panels.front().x;
+  figure::ChartAxis y = chart.panels.front().y;
+  enclose(chart, &ChartSeries::x, x);
+  enclose(chart, &ChartSeries::y, y);
+  for (figure::ChartPanel& panel : chart.panels) {
+    panel.x = x;
+    panel.y = y;
+  }
+}
+
 /// A chart with a panel for each library, and a line for each integrator and scene.
 [[nodiscard]] figure::Chart chart_of(const std::vector<BenchScene>& scenes, const figure::ChartAxis& x,
                                      const figure::ChartAxis& y, const Place& place) {
@@ -281,10 +338,11 @@ using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
         series.x.push_back(along);
         series.y.push_back(up);
       }
+      if (series.x.size() == 1) series.style = ChartSeries::Style::points;
       if (!series.x.empty()) chart.panels[line.panel].series.push_back(std::move(series));
     }
   }
-  std::erase_if(chart.panels, [](const figure::ChartPanel& panel) { return panel.series.empty(); });
+  compare_panels(chart);
   return chart;
 }
 
@@ -300,8 +358,8 @@ using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
       });
       if (found == worst.points.end())
         worst.points.push_back(point);
-      else
-        found->event_error = std::fmax(found->event_error, point.event_error);
+      else if (!(point.event_error <= found->event_error))
+        found->event_error = point.event_error;
     }
   }
   return worst;
@@ -309,8 +367,21 @@ using Place = std::function<std::pair<double, double>(const BenchPoint&)>;
 
 constexpr double k_least_error = 1e-16;  ///< figures show an error of zero as this
 
-/// Chart of the time to an error over that of "auto": the geometric mean of the scenes in which both reach the error.
+/// Times to an error over those of "auto", of the scenes in which both reach the error.
+[[nodiscard]] std::vector<double> ratios_to_auto(const std::vector<BenchScene>& scenes, std::string_view integrator,
+                                                 double error) {
+  std::vector<double> ratios;
+  for (const BenchScene& scene : scenes) {
+    const double ratio = time_to_error(scene, integrator, error) / time_to_error(scene, integrators::k_auto, error);
+    if (std::isfinite(ratio)) ratios.push_back(ratio);
+  }
+  return ratios;
+}
+
+/// Chart of the time to an error over that of "auto", geometric means. A line ends where more than a tenth of its
+/// scenes drop out: those that are left are the easy ones.
 [[nodiscard]] figure::Chart summary_of(const std::vector<BenchScene>& scenes) {
+  constexpr double k_least_share = 0.9;
   figure::Chart chart;
   for (const char* note : k_panels) {
     chart.panels.push_back({.x = {.label = "Error of the curve", .is_logarithmic = true},
@@ -324,25 +395,20 @@ constexpr double k_least_error = 1e-16;  ///< figures show an error of zero as t
                        .colour = line.colour,
                        .x = {},
                        .y = {}};
+    std::size_t most = 0;
     for (int k = 3; k <= 11; ++k) {
       const double error = std::pow(10.0, -k);
+      const std::vector<double> ratios = ratios_to_auto(scenes, line.integrator, error);
+      most = std::max(most, ratios.size());
+      if (ratios.empty() || static_cast<double>(ratios.size()) < k_least_share * static_cast<double>(most)) break;
       double sum = 0.0;
-      long count = 0;
-      for (const BenchScene& scene : scenes) {
-        const double ratio =
-            time_to_error(scene, line.integrator, error) / time_to_error(scene, integrators::k_auto, error);
-        if (!std::isfinite(ratio)) continue;
-        sum += std::log(ratio);
-        ++count;
-      }
+      for (const double ratio : ratios) sum += std::log(ratio);
       series.x.push_back(error);
-      series.y.push_back(count > 0 ? std::exp(sum / static_cast<double>(count)) : k_nan);
+      series.y.push_back(std::exp(sum / static_cast<double>(ratios.size())));
     }
-    if (std::ranges::any_of(series.y, [](double value) { return std::isfinite(value); })) {
-      chart.panels[line.panel].series.push_back(std::move(series));
-    }
+    if (!series.x.empty()) chart.panels[line.panel].series.push_back(std::move(series));
   }
-  std::erase_if(chart.panels, [](const figure::ChartPanel& panel) { return panel.series.empty(); });
+  compare_panels(chart);
   return chart;
 }
 
@@ -395,12 +461,15 @@ std::string machine_text() {
 std::string bench_text(const std::vector<BenchScene>& scenes, const std::vector<BenchProfile>& profiles,
                        const std::vector<BenchSaving>& savings) {
   std::string text = fmt::format(
-      "# Run time against error\n\n{}\n\nTimes are the fastest of repeated runs of one history on one core, recording "
-      "included, set-up of the scene\nnot. Errors are the largest difference of any force, stress, displacement, "
+      "# Run time against error\n\n{}\n\nTimes are the processor times of the fastest of repeated runs of one history, "
+      "recording included, set-up of the\nscene not. Errors are the largest difference of any force, stress, "
+      "displacement, "
       "strain, apparent radius or work at\nany output point over its largest value. \"Time at 1e-08\": of the fastest "
       "run with no larger error.\n",
       machine_text());
-  const bool has_auto = std::ranges::any_of(scenes, [](const BenchScene& scene) { return !scene.chosen.empty(); });
+  const bool has_auto = std::ranges::any_of(scenes, [](const BenchScene& scene) {
+    return std::ranges::find(scene.points, integrators::k_auto, &BenchPoint::integrator) != scene.points.end();
+  });
   if (has_auto) append_auto(scenes, text);
   if (!scenes.empty()) append_constants(scenes, text);
   append_profiles(profiles, text);
