@@ -617,6 +617,9 @@ def write_distance_of_cel(rows):
     write("cel-distance.md", table(["set", "case", *quantities, "unloading, axial", "unloading, lateral"], lines))
 
 
+LEAST_COVERAGE = 0.5  # share of a band from which on an error stands for it
+
+
 def write_laws(program, rows):
     """One row for each law of walls: cost, distance from finite elements by strain, domain."""
     times = {row["scene"]: microseconds(row["fastest[s]"]) for row in rows_of(ROOT / "plots" / "laws-cost.csv")}
@@ -637,7 +640,8 @@ def write_laws(program, rows):
             cells = []
             for column in columns:
                 measured = found.get(column, [])
-                cells.append(" / ".join(tenths(row["largest"]) for row in measured) or "-")
+                cells.append(" / ".join(tenths(row["largest"] if float(row["coverage"]) >= LEAST_COVERAGE else "nan")
+                                        for row in measured) or "-")
                 back = [float(row["unloading"]) for row in measured if row["unloading"] != "nan"]
                 if back:
                     cells[-1] += f"; back {100 * max(back):.1f}"
