@@ -23,7 +23,8 @@ struct Sample {
   double x;
   double reference;
   double difference;
-  bool counts;  ///< true if at least one of the curves is defined here
+  bool counts;          ///< true if at least one of the curves is defined here
+  double beyond = 0.0;  ///< distance of x from the nearest end of the other curve, if it lies beyond that
 };
 
 /// One value of x in a monotone piece, with both limits of the curve.
@@ -124,6 +125,11 @@ class PieceReader {
     return knot != knots_.end() && knot->along == along;
   }
 
+  /// Distance from the nearest end of the curve; 0 between its ends.
+  [[nodiscard]] double beyond(double along) const noexcept {
+    return std::max({0.0, along - knots_.back().along, knots_.front().along - along});
+  }
+
   /// The nearest jump within k_same_event of the range of x, or nullptr.
   [[nodiscard]] const Knot* jump_near(double along) const noexcept {
     const Knot* nearest = nullptr;
@@ -175,7 +181,8 @@ void sample_piece(const Piece& a, const Piece& b, double range, std::vector<Samp
       const double difference = reader.has_row(knot.along) ? nearer_difference(recorded_difference(knot.left, left),
                                                                                recorded_difference(knot.left, right))
                                                            : nearer_difference(left - knot.left, right - knot.left);
-      samples.push_back({x, knot.left, difference, !std::isnan(knot.left) || !std::isnan(left)});
+      samples.push_back(
+          {x, knot.left, difference, !std::isnan(knot.left) || !std::isnan(left), reader.beyond(knot.along)});
       continue;
     }
     // The jump of b may be a little earlier or later: left limits are read before both jumps, right limits after both.
@@ -184,8 +191,9 @@ void sample_piece(const Piece& a, const Piece& b, double range, std::vector<Samp
     const double after = jump ? std::max(knot.along, jump->along) : knot.along;
     const double left = reader.left_limit(before);
     const double right = reader.right_limit(after);
-    samples.push_back({x, knot.left, left - knot.left, !std::isnan(knot.left) || !std::isnan(left)});
-    samples.push_back({x, knot.right, right - knot.right, !std::isnan(knot.right) || !std::isnan(right)});
+    const double beyond = reader.beyond(knot.along);
+    samples.push_back({x, knot.left, left - knot.left, !std::isnan(knot.left) || !std::isnan(left), beyond});
+    samples.push_back({x, knot.right, right - knot.right, !std::isnan(knot.right) || !std::isnan(right), beyond});
   }
 }
 
@@ -246,6 +254,14 @@ struct PathIntegrals {
   double reference = 0.0;
 };
 
+/// Length over which two curves can be compared between samples one of which has no difference: the other curve may end
+/// between them.
+[[nodiscard]] double compared_part(const Sample& from, const Sample& to) noexcept {
+  if (std::isnan(from.difference) && std::isnan(to.difference)) return 0.0;
+  const double beyond = std::isnan(to.difference) ? to.beyond : from.beyond;
+  return beyond > 0.0 ? std::max(0.0, std::abs(to.x - from.x) - beyond) : 0.0;
+}
+
 [[nodiscard]] PathIntegrals integrate(const std::vector<Sample>& samples) noexcept {
   PathIntegrals sums;
   for (std::size_t k = 1; k < samples.size(); ++k) {
@@ -254,7 +270,10 @@ struct PathIntegrals {
     const double dx = std::abs(to.x - from.x);
     if (!(dx > 0.0) || !from.counts || !to.counts) continue;
     sums.length += dx;
-    if (std::isnan(from.difference) || std::isnan(to.difference)) continue;
+    if (std::isnan(from.difference) || std::isnan(to.difference)) {
+      sums.compared_length += compared_part(from, to);
+      continue;
+    }
     sums.compared_length += dx;
     sums.difference_squared += 0.5 * dx * (from.difference * from.difference + to.difference * to.difference);
     // An undefined reference already has an infinite difference.
@@ -271,7 +290,7 @@ struct PathIntegrals {
   double largest_reference = 0.0;
   double peak_place = -k_infinity;
   double reference_at_peak = 0.0;
-  for (const auto& [x, reference, difference, counts] : samples) {
+  for (const auto& [x, reference, difference, counts, beyond] : samples) {
     if (std::abs(difference) > largest) {
       largest = std::abs(difference);
       result.linf_at = x;

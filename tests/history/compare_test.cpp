@@ -139,7 +139,15 @@ TEST(CompareCurves, LeavesTheJumpAtATurnToNeitherPiece) {
 TEST(CompareCurves, ComparesWhereBothAreAndSaysHowFarThatIs) {
   const auto difference = compare_curves(Values{0, 1, 2, 4}, Values{1, 1, 1, 1}, Values{0, 2.5}, Values{1, 1});
   EXPECT_EQ(difference.linf, 0.0);
-  EXPECT_DOUBLE_EQ(difference.coverage, 0.5);
+  EXPECT_DOUBLE_EQ(difference.coverage, 2.5 / 4.0);
+}
+
+TEST(CompareCurves, CountsTheWholePathUpToTheEndOfTheOther) {
+  const Values x{0, 1, 2};
+  const Values y{0, 1, 2};
+  EXPECT_DOUBLE_EQ(compare_curves(x, y, Values{0, 1, 1.999}, y).coverage, 1.999 / 2.0);
+  EXPECT_DOUBLE_EQ(compare_curves(x, y, Values{0.25, 1, 2}, y).coverage, 1.75 / 2.0);
+  EXPECT_DOUBLE_EQ(compare_curves(Values{2, 1, 0}, y, Values{2, 1, 0.5}, y).coverage, 1.5 / 2.0) << "x falls";
 }
 
 TEST(CompareCurves, IsInfinitelyApartWhereOnlyOneIsDefined) {
