@@ -156,21 +156,15 @@ void write_list(const fs::path& folder) {
          name.find('.', prefix.size()) == std::string_view::npos;
 }
 
-void check_target(const fs::path& target, const std::string& marker) {
-  if (fs::exists(fs::symlink_status(target / marker))) {
-    if (is_own_marker(target, marker)) return;
-    refuse(
-        target,
-        fmt::format("its {} is none that monograin has written, and would be replaced; choose another folder", marker));
+/// True if the target holds an earlier result of the kind, which may be replaced.
+[[nodiscard]] bool holds_own_result(const fs::path& target, const std::string& marker) {
+  if (!fs::exists(fs::symlink_status(target / marker))) {
+    if (read_list(target).empty()) return false;
+    refuse(target, fmt::format("holds a result of another kind (no {}); choose another folder", marker));
   }
-  const bool is_empty = std::ranges::all_of(fs::directory_iterator(target), [](const fs::directory_entry& entry) {
-    return is_staged_name(entry.path().filename().string(), k_staged_infix);
-  });
-  if (!is_empty) {
-    refuse(target, fmt::format("holds files but no earlier result of this kind (no {}), some of which a result might "
-                               "replace; choose another folder",
-                               marker));
-  }
+  if (is_own_marker(target, marker)) return true;
+  refuse(target, fmt::format("its {} is none that monograin has written, and would be replaced; choose another folder",
+                             marker));
 }
 
 // --- putting a result in its place
@@ -287,7 +281,7 @@ StagedFolder::StagedFolder(const fs::path& target, std::string_view marker)
       clear_leftovers(target_, k_staged_infix, target_, marker_);
       clear_leftovers(target_.parent_path(), prefix_beside(target_), target_, marker_);
     }
-    check_target(target_, marker_);
+    replaces_own_ = holds_own_result(target_, marker_);
   } else {
     make_parents();
     clear_leftovers(target_.parent_path(), prefix_beside(target_), target_, marker_);
@@ -342,6 +336,9 @@ void StagedFolder::publish() {
   for (const std::string& name : names_in(staged_, marker_)) {
     if (fs::is_directory(fs::symlink_status(target_ / name))) {
       refuse(target_ / name, "is a folder; a file is to go there");
+    }
+    if (!replaces_own_ && fs::exists(fs::symlink_status(target_ / name))) {
+      refuse(target_ / name, "monograin has not written this file and would replace it; choose another folder");
     }
     sync_to_disk(staged_ / name);
   }

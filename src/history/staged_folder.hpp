@@ -29,8 +29,8 @@ class StagedFolder {
  public:
   /// Makes the hidden folder. A target that cannot be written is thus reported before anything is computed.
   /// @param marker  name of a file that every result of the kind has
-  /// @throws std::runtime_error if the target is a file, cannot be written, or holds files but no result of that kind
-  /// by this program
+  /// @throws std::runtime_error if the target is a file, cannot be written, or holds a result of another kind or a
+  /// marker that is not by this program
   explicit StagedFolder(const std::filesystem::path& target, std::string_view marker = k_run_marker);
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
@@ -40,8 +40,8 @@ class StagedFolder {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return staged_; }
 
   /// Flushes the files to the disk and puts them into the target.
-  /// @throws std::runtime_error if a file cannot be put there, for example because a folder has its name. The target is
-  /// then unchanged, unless publish() was moving files one by one.
+  /// @throws std::runtime_error if a file cannot be put there, because a folder or a file of the user has its name. The
+  /// target is then unchanged, unless publish() was moving files one by one.
   void publish();
 
  private:
@@ -50,6 +50,7 @@ class StagedFolder {
 
   std::filesystem::path target_;
   std::string marker_;
+  bool replaces_own_ = false;                        ///< the target holds an earlier result
   std::vector<std::filesystem::path> made_parents_;  ///< folders made for the target, the outermost first
   std::filesystem::path staged_;
   int lock_ = -1;  ///< descriptor that locks the hidden folder until it is published or removed

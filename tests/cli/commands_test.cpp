@@ -164,12 +164,36 @@ TEST_F(Commands, ANewRunReplacesTheOldOneAsAWhole) {
   EXPECT_EQ(std::distance(fs::directory_iterator(path("runs")), fs::directory_iterator{}), 1);
 }
 
-TEST_F(Commands, AFolderThatHoldsSomethingElseIsNotReplaced) {
+TEST_F(Commands, AFolderOfTheUserTakesARunBesideOtherFiles) {
+  fs::create_directory(path("mine"));
+  write_text(path("mine/small.toml"), k_small);
+  write_text(path("mine/notes.txt"), "keep me");
+  EXPECT_EQ(monograin("run mine/small.toml -o mine").code, 0);
+  EXPECT_EQ(text("mine/notes.txt"), "keep me");
+  EXPECT_EQ(text("mine/small.toml"), k_small);
+  EXPECT_TRUE(fs::exists(path("mine/history.csv")));
+  EXPECT_EQ(monograin("run mine/small.toml -o mine").code, 0) << "a run replaces its own files";
+}
+
+TEST_F(Commands, AFileOfTheUserIsNotReplacedByARun) {
   write_text(path("small.toml"), k_small);
   fs::create_directory(path("mine"));
-  write_text(path("mine/notes.txt"), "keep me");
-  EXPECT_EQ(monograin("run small.toml -o mine").code, 2);
-  EXPECT_EQ(text("mine/notes.txt"), "keep me");
+  write_text(path("mine/history.csv"), "keep me");
+  const Outcome outcome = monograin("run small.toml -o mine");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("mine/history.csv: monograin has not written this file"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(text("mine/history.csv"), "keep me");
+  EXPECT_FALSE(fs::exists(path("mine/run.json")));
+}
+
+TEST_F(Commands, AResultOfAnotherKindIsNotReplacedByARun) {
+  write_text(path("small.toml"), k_small);
+  ASSERT_EQ(monograin("run small.toml -o r").code, 0);
+  fs::rename(path("r/run.json"), path("r/calibration.json"));
+  const Outcome outcome = monograin("run small.toml -o r");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("holds a result of another kind (no run.json)"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Commands, AKillAtAnyMomentLeavesTheLastGoodResult) {
@@ -441,7 +465,7 @@ TEST_F(Commands, CiteNamesTheModelThatWasMeant) {
 TEST_F(Commands, RunLeavesTheReferencesOfTheModel) {
   write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml --plot").code, 0);
-  const nlohmann::json references = nlohmann::json::parse(text("runs/small/run.json")).at("references");
+  const nlohmann::json references = nlohmann::json::parse(text("runs/small/run.json")).at("citation");
   ASSERT_EQ(references.size(), 2U);
   const std::string line = "# reference: " + references[0].get<std::string>() + "\n";
   EXPECT_NE(line.find("doi:"), std::string::npos) << line;
@@ -576,7 +600,7 @@ TEST_F(Commands, CalibrateWritesNothingWhereSomethingIsAtFault) {
   write_text(path("measured.csv"), "axial.displacement[m],axial.force[N]\n5e-5,5\n1e-4,12\n");
   ASSERT_EQ(monograin("run small.toml -o measured").code, 0);
   fs::create_directory(path("mine"));
-  write_text(path("mine/notes.txt"), "keep me");
+  write_text(path("mine/fit.csv"), "keep me");
   const auto with_run = files();
   EXPECT_EQ(monograin("calibrate fit.toml -o mine").code, 2);
   EXPECT_EQ(monograin("calibrate fit.toml -o measured").code, 2) << "a run is no calibration";

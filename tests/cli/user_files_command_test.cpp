@@ -218,7 +218,7 @@ TEST_F(UserFiles, WhatCannotBeWrittenIsToldBeforeAnythingIsRun) {
   EXPECT_EQ(text("file"), "mine");
   write_text(path("second.toml"), k_small);
   fs::create_directories(path("out/second"));
-  write_text(path("out/second/notes.txt"), "mine");
+  write_text(path("out/second/run.json"), "{}");
   EXPECT_EQ(monograin("run small.toml second.toml -o out").code, 2);
   EXPECT_FALSE(fs::exists(path("out/small"))) << "the first was not run";
   EXPECT_EQ(names_in("out"), Strings{"second"});

@@ -965,9 +965,9 @@ TEST_F(CalibrationTest, ANewResultReplacesItsFilesAndNoOthers) {
   EXPECT_EQ(text_of("out/notes.txt"), "keep me");
   EXPECT_NE(text_of("out/fit.csv"), "old");
   fs::create_directory(folder() / "mine");
-  write("mine/notes.txt", "keep me");
+  write("mine/fit.csv", "keep me");
   EXPECT_THROW(static_cast<void>(written(calibration, result, folder() / "mine")), std::runtime_error);
-  EXPECT_EQ(text_of("mine/notes.txt"), "keep me");
+  EXPECT_EQ(text_of("mine/fit.csv"), "keep me");
 }
 
 // --- faults
