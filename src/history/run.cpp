@@ -39,13 +39,11 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Keys of `[material]` and their symbols in the header of a history.
+/// Keys of `[material]` that the header of a history names by their symbols. They come before the others.
 constexpr std::pair<std::string_view, std::string_view> k_symbols[] = {
     {"youngs_modulus", "E"},
     {"poisson_ratio", "nu"},
     {"yield_stress", "Y"},
-    {"surface_energy", "surface_energy"},
-    {"yield_pressure", "yield_pressure"},
 };
 
 std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
@@ -64,6 +62,10 @@ std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
   for (const auto& [key, symbol] : k_symbols) {
     const auto found = scenario.material.find(std::string(key));
     if (found != scenario.material.end()) header.emplace_back(symbol, fmt::format("{}", found->second));
+  }
+  for (const auto& [key, value] : scenario.material) {
+    if (std::ranges::find(k_symbols, key, [](const auto& symbol) { return symbol.first; }) == std::end(k_symbols))
+      header.emplace_back(key, fmt::format("{}", value));
   }
   for (std::string& reference : reference_texts(model)) header.emplace_back("reference", std::move(reference));
   if (!run.record.message.empty()) header.insert(header.begin() + 4, {"message", run.record.message});

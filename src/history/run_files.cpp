@@ -57,7 +57,7 @@ Json to_json(const Run& run) {
           {"message", record.message},
           {"limit", record.limit ? Json(code(*record.limit)) : Json()},
           {"model", scenario.model},
-          {"references", reference_texts(*find_model(scenario.model))},
+          {"citation", reference_texts(*find_model(scenario.model))},
           {"classes", classes},
           {"skipped", run.skipped},
           {"sensitivities", std::move(sensitivities)},
