@@ -90,6 +90,9 @@ void note_residual_tests(const Calibration& calibration, const CalibrationResult
     note += fmt::format(", and intervals are too narrow, by a factor of about {:.2g}",
                         std::sqrt((1.0 + tests.correlation) / (1.0 - tests.correlation)));
   }
+  if (!calibration.has_machine() && calibration.machine_moves_x()) {
+    note += "; whether it is the machine, a fit shows in which data.offset and data.compliance are free";
+  }
   notes.push_back(std::move(note));
 }
 
