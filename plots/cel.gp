@@ -4,7 +4,7 @@ data = './cel.dat'
 
 set encoding utf8
 set minussign
-set terminal svg enhanced size 643,465 font 'Helvetica,13' background 'white'
+set terminal svg enhanced size 643,465 font 'Helvetica,Arial,sans-serif,13' background 'white'
 set output output
 set border 3 lw 0.8
 set tics nomirror out scale 0.6
@@ -26,8 +26,8 @@ unset label 4
 plot data index 'run 1 axial loading' using 1:2 with lines lc rgb '#0072B2' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:2 with lines lc rgb '#0072B2' lw 2 dt (7,4), \
   data index 'run 1 axial reloading' using 1:2 with lines lc rgb '#0072B2' lw 4.4 dt (0.8,2.6), \
-  data index 'run 1 lateral loading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt 1, \
-  data index 'run 1 lateral unloading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
+  data index 'run 1 lateral loading' using 1:2 with linespoints lc rgb '#D55E00' lw 2 dt 1 pt 7 ps 0.45 pn 7, \
+  data index 'run 1 lateral unloading' using 1:2 with linespoints lc rgb '#D55E00' lw 2 dt (7,4) pt 7 ps 0.45 pn 7, \
   data index 'run 1 lateral reloading' using 1:2 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event yield.' using 1:2 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event load-reversal.' using 1:2 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000'
@@ -44,8 +44,8 @@ unset label 4
 plot data index 'run 1 axial loading' using 1:3 with lines lc rgb '#0072B2' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:3 with lines lc rgb '#0072B2' lw 2 dt (7,4), \
   data index 'run 1 axial reloading' using 1:3 with lines lc rgb '#0072B2' lw 4.4 dt (0.8,2.6), \
-  data index 'run 1 lateral loading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt 1, \
-  data index 'run 1 lateral unloading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
+  data index 'run 1 lateral loading' using 1:3 with linespoints lc rgb '#D55E00' lw 2 dt 1 pt 7 ps 0.45 pn 7, \
+  data index 'run 1 lateral unloading' using 1:3 with linespoints lc rgb '#D55E00' lw 2 dt (7,4) pt 7 ps 0.45 pn 7, \
   data index 'run 1 lateral reloading' using 1:3 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event yield.' using 1:3 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event load-reversal.' using 1:3 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000'
@@ -62,8 +62,8 @@ unset label 4
 plot data index 'run 1 axial loading' using 1:4 with lines lc rgb '#0072B2' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:4 with lines lc rgb '#0072B2' lw 2 dt (7,4), \
   data index 'run 1 axial reloading' using 1:4 with lines lc rgb '#0072B2' lw 4.4 dt (0.8,2.6), \
-  data index 'run 1 lateral loading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt 1, \
-  data index 'run 1 lateral unloading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
+  data index 'run 1 lateral loading' using 1:4 with linespoints lc rgb '#D55E00' lw 2 dt 1 pt 7 ps 0.45 pn 7, \
+  data index 'run 1 lateral unloading' using 1:4 with linespoints lc rgb '#D55E00' lw 2 dt (7,4) pt 7 ps 0.45 pn 7, \
   data index 'run 1 lateral reloading' using 1:4 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event yield.' using 1:4 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
   data index 'event load-reversal.' using 1:4 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000'
@@ -76,8 +76,8 @@ set label 1 'Contact' at screen 0.5176, 0.4431 left
 set key at screen 0.6176, 0.4634 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#0072B2' lw 2 dt 1 title 'axial'
 unset label 1
-set key at screen 0.7900, 0.4634 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#D55E00' lw 2 dt 1 title 'lateral'
+set key at screen 0.7967, 0.4634 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with linespoints lc rgb '#D55E00' lw 2 dt 1 pt 7 ps 0.45 pn 7 title 'lateral'
 set label 1 'Path' at screen 0.5176, 0.4024 left
 set key at screen 0.6176, 0.4228 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 2 dt 1 title 'loading'

@@ -4,7 +4,7 @@ data = './die.dat'
 
 set encoding utf8
 set minussign
-set terminal svg enhanced size 643,571 font 'Helvetica,13' background 'white'
+set terminal svg enhanced size 643,571 font 'Helvetica,Arial,sans-serif,13' background 'white'
 set output output
 set border 3 lw 0.8
 set tics nomirror out scale 0.6
@@ -26,15 +26,15 @@ unset label 4
 plot data index 'run 1 axial loading' using 1:2 with lines lc rgb '#0072B2' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:2 with lines lc rgb '#0072B2' lw 2 dt (7,4), \
   data index 'run 1 axial reloading' using 1:2 with lines lc rgb '#0072B2' lw 4.4 dt (0.8,2.6), \
-  data index 'run 1 lateral loading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt 1, \
-  data index 'run 1 lateral unloading' using 1:2 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
+  data index 'run 1 lateral loading' using 1:2 with linespoints lc rgb '#D55E00' lw 2 dt 1 pt 7 ps 0.45 pn 7, \
+  data index 'run 1 lateral unloading' using 1:2 with linespoints lc rgb '#D55E00' lw 2 dt (7,4) pt 7 ps 0.45 pn 7, \
   data index 'run 1 lateral reloading' using 1:2 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event yield.' using 1:2 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-made.' using 1:2 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event load-reversal.' using 1:2 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-lost.' using 1:2 with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event dent-touched.' using 1:2 with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event reload.' using 1:2 with points pt 1 ps 0.9 lw 1.1 lc rgb '#000000'
+  data index 'event contact-made.' using 1:2 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event load-reversal.' using 1:2 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event contact-lost.' using 1:2 with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event dent-touched.' using 1:2 with points pt 11 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event reload.' using 1:2 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000'
 
 set lmargin at screen 0.6294; set rmargin at screen 0.9735
 set bmargin at screen 0.6921; set tmargin at screen 0.9603
@@ -48,15 +48,15 @@ unset label 4
 plot data index 'run 1 axial loading' using 1:3 with lines lc rgb '#0072B2' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:3 with lines lc rgb '#0072B2' lw 2 dt (7,4), \
   data index 'run 1 axial reloading' using 1:3 with lines lc rgb '#0072B2' lw 4.4 dt (0.8,2.6), \
-  data index 'run 1 lateral loading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt 1, \
-  data index 'run 1 lateral unloading' using 1:3 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
+  data index 'run 1 lateral loading' using 1:3 with linespoints lc rgb '#D55E00' lw 2 dt 1 pt 7 ps 0.45 pn 7, \
+  data index 'run 1 lateral unloading' using 1:3 with linespoints lc rgb '#D55E00' lw 2 dt (7,4) pt 7 ps 0.45 pn 7, \
   data index 'run 1 lateral reloading' using 1:3 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event yield.' using 1:3 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-made.' using 1:3 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event load-reversal.' using 1:3 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-lost.' using 1:3 with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event dent-touched.' using 1:3 with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event reload.' using 1:3 with points pt 1 ps 0.9 lw 1.1 lc rgb '#000000'
+  data index 'event contact-made.' using 1:3 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event load-reversal.' using 1:3 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event contact-lost.' using 1:3 with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event dent-touched.' using 1:3 with points pt 11 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event reload.' using 1:3 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000'
 
 set lmargin at screen 0.1294; set rmargin at screen 0.4735
 set bmargin at screen 0.2947; set tmargin at screen 0.5629
@@ -70,15 +70,15 @@ unset label 4
 plot data index 'run 1 axial loading' using 1:4 with lines lc rgb '#0072B2' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:4 with lines lc rgb '#0072B2' lw 2 dt (7,4), \
   data index 'run 1 axial reloading' using 1:4 with lines lc rgb '#0072B2' lw 4.4 dt (0.8,2.6), \
-  data index 'run 1 lateral loading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt 1, \
-  data index 'run 1 lateral unloading' using 1:4 with lines lc rgb '#D55E00' lw 2 dt (7,4), \
+  data index 'run 1 lateral loading' using 1:4 with linespoints lc rgb '#D55E00' lw 2 dt 1 pt 7 ps 0.45 pn 7, \
+  data index 'run 1 lateral unloading' using 1:4 with linespoints lc rgb '#D55E00' lw 2 dt (7,4) pt 7 ps 0.45 pn 7, \
   data index 'run 1 lateral reloading' using 1:4 with lines lc rgb '#D55E00' lw 4.4 dt (0.8,2.6), \
   data index 'event yield.' using 1:4 with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-made.' using 1:4 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event load-reversal.' using 1:4 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event contact-lost.' using 1:4 with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event dent-touched.' using 1:4 with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event reload.' using 1:4 with points pt 1 ps 0.9 lw 1.1 lc rgb '#000000'
+  data index 'event contact-made.' using 1:4 with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event load-reversal.' using 1:4 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event contact-lost.' using 1:4 with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event dent-touched.' using 1:4 with points pt 11 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event reload.' using 1:4 with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000'
 
 set lmargin at screen 0.6294; set rmargin at screen 0.9735
 set bmargin at screen 0.2947; set tmargin at screen 0.5629
@@ -92,8 +92,8 @@ unset label 4
 plot data index 'run 1 axial loading' using 1:5 with lines lc rgb '#303030' lw 2 dt 1, \
   data index 'run 1 axial unloading' using 1:5 with lines lc rgb '#303030' lw 2 dt (7,4), \
   data index 'run 1 axial reloading' using 1:5 with lines lc rgb '#303030' lw 4.4 dt (0.8,2.6), \
-  data index 'event growth-on.' using 1:5 with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000', \
-  data index 'event growth-off.' using 1:5 with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000'
+  data index 'event growth-on.' using 1:5 with points pt 7 ps 0.9 lw 1.1 lc rgb '#000000', \
+  data index 'event growth-off.' using 1:5 with points pt 5 ps 0.9 lw 1.1 lc rgb '#000000'
 
 # The legend: empty plots that show nothing but a key, each in its place; a terminal's own spacing of several
 # lines in one key would not be that of the headings.
@@ -103,33 +103,33 @@ set label 1 'Contact' at screen 0.0176, 0.1689 left
 set key at screen 0.1176, 0.1854 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#0072B2' lw 2 dt 1 title 'axial'
 unset label 1
-set key at screen 0.2900, 0.1854 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#D55E00' lw 2 dt 1 title 'lateral'
+set key at screen 0.2967, 0.1854 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with linespoints lc rgb '#D55E00' lw 2 dt 1 pt 7 ps 0.45 pn 7 title 'lateral'
 set label 1 'Path' at screen 0.0176, 0.1358 left
 set key at screen 0.1176, 0.1523 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 2 dt 1 title 'loading'
 unset label 1
-set key at screen 0.3124, 0.1523 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.3332, 0.1523 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 2 dt (7,4) title 'unloading'
-set key at screen 0.5071, 0.1523 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+set key at screen 0.5488, 0.1523 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with lines lc rgb '#303030' lw 4.4 dt (0.8,2.6) title 'reloading'
 set label 1 'Events' at screen 0.0176, 0.1026 left
 set key at screen 0.1176, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
 plot [0:1] [0:1] NaN, keyentry with points pt 6 ps 0.9 lw 1.1 lc rgb '#000000' title 'yield'
 unset label 1
-set key at screen 0.3571, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-on'
-set key at screen 0.5965, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-made'
+set key at screen 0.3750, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 7 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-on'
+set key at screen 0.6323, 0.1192 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-made'
 set key at screen 0.1176, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 10 ps 0.9 lw 1.1 lc rgb '#000000' title 'load-reversal'
-set key at screen 0.3571, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-off'
-set key at screen 0.5965, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 14 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-lost'
+plot [0:1] [0:1] NaN, keyentry with points pt 4 ps 0.9 lw 1.1 lc rgb '#000000' title 'load-reversal'
+set key at screen 0.3750, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 5 ps 0.9 lw 1.1 lc rgb '#000000' title 'growth-off'
+set key at screen 0.6323, 0.0861 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 12 ps 0.9 lw 1.1 lc rgb '#000000' title 'contact-lost'
 set key at screen 0.1176, 0.0530 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 2 ps 0.9 lw 1.1 lc rgb '#000000' title 'dent-touched'
-set key at screen 0.3571, 0.0530 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
-plot [0:1] [0:1] NaN, keyentry with points pt 1 ps 0.9 lw 1.1 lc rgb '#000000' title 'reload'
+plot [0:1] [0:1] NaN, keyentry with points pt 11 ps 0.9 lw 1.1 lc rgb '#000000' title 'dent-touched'
+set key at screen 0.3750, 0.0530 left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 noautotitle
+plot [0:1] [0:1] NaN, keyentry with points pt 8 ps 0.9 lw 1.1 lc rgb '#000000' title 'reload'
 unset multiplot
 unset output

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
 
+#include "figure/column_chart.hpp"
 #include "figure/figure.hpp"
 #include "figure/run_curves.hpp"
 #include "history/table.hpp"
@@ -48,11 +50,6 @@ constexpr std::array k_figures{
     BodyFigure{{"strain_axial", "Axial strain", "", true}, k_material_point},
 };
 
-fs::path history_of(const fs::path& run) {
-  std::error_code ignored;
-  return fs::is_directory(run, ignored) ? run / "history.csv" : run;
-}
-
 const BodyFigure* figure_of(const Table& history) {
   const auto found = std::ranges::find_if(
       k_figures, [&](const BodyFigure& figure) { return history.find(figure.x.column).has_value(); });
@@ -77,7 +74,7 @@ std::vector<double> values_of(const Table& table, const Table& history, const Sh
   return values;
 }
 
-/// Adds circles at the events, one series for each name. Events of the program are left out: the curves turn there.
+/// Adds marks at the events, one series for each name.
 void append_events(const Table& events, const Table& history, const BodyFigure& figure, double sign, std::size_t panel,
                    std::vector<ChartSeries>& series) {
   const auto name = events.find("event");
@@ -85,23 +82,14 @@ void append_events(const Table& events, const Table& history, const BodyFigure& 
   const std::vector<double> x = values_of(events, history, figure.x, sign);
   const std::vector<double> y = values_of(events, history, figure.panels[panel], sign);
   for (std::size_t row = 0; row < events.row_count(); ++row) {
-    const std::string event(events.word(row, *name));
-    if (event == "step-end" || event == "until-met") continue;
-    auto found = std::ranges::find(series, verbatim_text(event), &ChartSeries::legend);
-    if (found == series.end()) {
-      found = series.insert(
-          series.end(),
-          {.legend = verbatim_text(event), .style = ChartSeries::Style::points, .colour = {}, .x = {}, .y = {}});
-    }
-    found->x.push_back(x[row]);
-    found->y.push_back(y[row]);
+    add_event(series, events.word(row, *name), x[row], y[row]);
   }
 }
 
 }  // namespace
 
 std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
-  const Table first = read_table(history_of(runs.front()));
+  const Table first = read_table(recorded_table(runs.front()));
   const BodyFigure* figure = figure_of(first);
   if (figure == nullptr) return std::nullopt;
   const double sign = sign_of(first, figure->x);
@@ -115,7 +103,7 @@ std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
   }
   std::vector<std::vector<ChartSeries>> events(figure->panels.size());
   for (const fs::path& run : runs) {
-    const fs::path file = history_of(run);
+    const fs::path file = recorded_table(run);
     const Table history = read_table(file);
     if (figure_of(history) != figure) {
       throw FigureError(
@@ -138,6 +126,13 @@ std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
   for (std::size_t panel = 0; panel < events.size(); ++panel) {
     std::ranges::move(events[panel], std::back_inserter(chart.panels[panel].series));
   }
+  // A model may leave a column undefined, such as the density where no law gives it.
+  std::erase_if(chart.panels, [](const ChartPanel& panel) {
+    return std::ranges::none_of(panel.series, [](const ChartSeries& series) {
+      return std::ranges::any_of(series.y, [](double value) { return std::isfinite(value); });
+    });
+  });
+  if (chart.panels.empty()) throw FigureError("all values are undefined");
   return chart;
 }
 

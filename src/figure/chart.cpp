@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <ranges>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -14,6 +16,7 @@
 #include "figure/gnuplot.hpp"
 #include "figure/legend.hpp"
 #include "figure/page.hpp"
+#include "figure/text_width.hpp"
 
 namespace monograin::figure {
 namespace {
@@ -170,13 +173,18 @@ struct PanelAxes {
   return {axis_over(panel.x, std::move(x)), axis_over(panel.y, std::move(y))};
 }
 
+[[nodiscard]] bool is_points(const ChartSeries& series) {
+  return series.style == Style::points || series.style == Style::events;
+}
+
 /// True for so many points that they would hide lines and bands: they are drawn below, as small translucent dots.
 [[nodiscard]] bool is_crowd(const ChartSeries& series) {
   constexpr std::size_t k_crowd = 1000;
   return series.style == Style::points && series.x.size() > k_crowd;
 }
 
-/// Gives each legend its colour and its points: series with the same legend look the same in every panel.
+/// Gives each legend its colour, its points and the marks on its lines: series with the same legend look the same in
+/// every panel.
 class Looks {
  public:
   explicit Looks(const Chart& chart) {
@@ -184,6 +192,7 @@ class Looks {
       for (const ChartSeries& series : panel.series) add(series);
     }
     give_colours();
+    give_marks(chart);
   }
 
   [[nodiscard]] std::string line(const ChartSeries& series) const {
@@ -197,6 +206,7 @@ class Looks {
   [[nodiscard]] std::string floor_points(const ChartSeries& series) const { return floor_style(stroke(series).colour); }
 
   [[nodiscard]] std::string points(const ChartSeries& series) const {
+    if (series.style == Style::events) return event_points(series.legend);
     const auto place = static_cast<std::size_t>(std::ranges::find(points_, series.legend) - points_.begin());
     const unsigned shade = series.colour ? colour_of(*series.colour) : k_neutral_colour;
     if (is_crowd(series)) return fmt::format("with points pt 7 ps 0.2 lc rgb '#A0{:06X}'", shade);
@@ -206,6 +216,7 @@ class Looks {
   [[nodiscard]] std::vector<LegendRow> legend_rows(const Chart& chart) const {
     LegendRow curves{"Curve", {}};
     LegendRow points{"Points", {}};
+    LegendRow events{"Events", {}};
     LegendRow areas{chart.area_heading, {}};
     LegendRow bands{"Band", {}};
     for (const ChartPanel& panel : chart.panels) {
@@ -213,12 +224,16 @@ class Looks {
       for (const ChartArea& area : panel.areas) put(areas, {area.legend, area_style(area.colour)});
       for (const ChartBand& band : panel.bands) put(bands, {band.legend, area_style(band.colour)});
       for (const ChartSeries& series : panel.series) {
-        const bool is_points = series.style == Style::points;
-        put(is_points ? points : curves, {series.legend, is_points ? this->points(series) : line(series)});
+        if (series.style == Style::events)
+          put(events, {verbatim_text(series.legend), this->points(series)});
+        else if (series.style == Style::points)
+          put(points, {series.legend, this->points(series)});
+        else
+          put(curves, {series.legend, line(series)});
       }
     }
     if (has_floor(chart)) put(points, {std::string(k_floor_legend), floor_style(k_neutral_colour)});
-    std::vector<LegendRow> rows{areas, bands, curves, path_row(chart), points};
+    std::vector<LegendRow> rows{areas, bands, curves, path_row(chart), points, events};
     std::erase_if(rows, [](const LegendRow& row) { return row.entries.empty(); });
     return rows;
   }
@@ -235,6 +250,7 @@ class Looks {
   struct Lines {
     std::string legend;
     std::optional<std::size_t> colour;  ///< number of the colour: that of the series, else one from give_colours()
+    std::size_t mark = 0;               ///< number of the marks
   };
 
   [[nodiscard]] static std::string floor_style(unsigned colour) {
@@ -253,11 +269,14 @@ class Looks {
       case Style::phases:
       case Style::solid:
       case Style::points:
+      case Style::events:
         break;
     }
     return "1";
   }
+
   void add(const ChartSeries& series) {
+    if (series.style == Style::events) return;
     if (series.style == Style::points) {
       if (std::ranges::find(points_, series.legend) == points_.end()) points_.push_back(series.legend);
       return;
@@ -280,9 +299,31 @@ class Looks {
     }
   }
 
+  /// Gives marks to all legends but one whose lines have the same dashes, if they stand together in a panel.
+  void give_marks(const Chart& chart) {
+    std::map<std::string_view, std::vector<std::string_view>> alike;  // legends by their dash
+    for (const ChartPanel& panel : chart.panels) {
+      std::map<std::string_view, std::set<std::string_view>> here;
+      for (const ChartSeries& series : panel.series) {
+        if (!is_points(series) && !series.legend.empty()) here[dash_of(series.style)].insert(series.legend);
+      }
+      for (const ChartSeries& series : panel.series) {
+        std::vector<std::string_view>& others = alike[dash_of(series.style)];
+        const bool needs_mark = here[dash_of(series.style)].size() > 1 && !is_points(series) && !series.legend.empty();
+        if (needs_mark && std::ranges::find(others, series.legend) == others.end()) others.push_back(series.legend);
+      }
+    }
+    for (const auto& [dash, legends] : alike) {
+      for (std::size_t k = 0; k < legends.size(); ++k) {
+        Lines& lines = *std::ranges::find(lines_, legends[k], &Lines::legend);
+        lines.mark = std::max(lines.mark, k);
+      }
+    }
+  }
+
   [[nodiscard]] Stroke stroke(const ChartSeries& series) const {
     const auto lines = std::ranges::find(lines_, series.legend, &Lines::legend);
-    return {colour_of(series.colour ? *series.colour : *lines->colour), k_line_width};
+    return {colour_of(series.colour ? *series.colour : *lines->colour), k_line_width, lines->mark};
   }
 
   [[nodiscard]] static bool has_floor(const Chart& chart) {
@@ -310,7 +351,7 @@ class Looks {
         });
       });
       if (!is_there) continue;
-      row.entries.push_back({std::string(phase_name(phase)), phase_line({k_neutral_colour, k_line_width}, phase)});
+      row.entries.push_back({std::string(phase_name(phase)), phase_line({k_neutral_colour, k_line_width, 0}, phase)});
     }
     if (row.entries.size() == 1) row.entries.clear();
     return row;
@@ -340,7 +381,7 @@ class Looks {
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const ChartSeries& series = panel.series[k];
     if (is_crowd(series)) continue;
-    if (series.style == Style::points) {
+    if (is_points(series)) {
       add_points(k);
     } else if (series.style != Style::phases) {
       plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, k)), looks.line(series)));
@@ -435,7 +476,7 @@ std::string chart_script(const Chart& chart, Format format, const std::string& f
                          const std::string& data_name) {
   const Looks looks(chart);
   const auto rows = looks.legend_rows(chart);
-  Layout layout = arrange(chart.panels.size(), line_count(rows, k_legend_strip_cm), line_count(rows, k_legend_cell_cm));
+  Layout layout = layout_of(chart.panels.size(), rows);
   make_room(chart, layout);
 
   std::string text = page_head(format, layout, figure_name, data_name);
@@ -445,7 +486,8 @@ std::string chart_script(const Chart& chart, Format format, const std::string& f
     text += "\nunset logscale; set format '%g'";
     text += frame_text(layout, k, axes.x, axes.y);
     text += shades_of(panel.range, axes.x);
-    text += fmt::format("set label 5 {} at graph 0.98, 1.06 right\n", label_string(panel.note));
+    text += fmt::format("set label 5 {} at graph 0.98, 1.06 right\n",
+                        label_string(fitted_text(panel.note, note_room(layout, k))));
     text += plots_of(panel, k, axes.y, looks);
   }
   text += "unset logscale; unset object\n" + legend_text(rows, layout);

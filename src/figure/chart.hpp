@@ -21,6 +21,7 @@ struct ChartSeries {
     dotted,
     dash_dotted,
     points,
+    events,  ///< points with the symbol of the event that the legend names, which stands there as in the file
   };
 
   std::string legend;  ///< gnuplot's enhanced text; series with the same text share a line of the legend; empty: none

@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "figure/data_file.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/page.hpp"
+#include "figure/text_width.hpp"
 
 namespace monograin::figure {
 namespace {
 
-/// Okabe and Ito's colours, which differ for the colour-blind and in grey print.
+/// Okabe and Ito's colours, which differ for the colour-blind; in grey print some do not.
 constexpr std::array k_colours{0x0072B2u, 0xD55E00u, 0x009E73u, 0xCC79A7u, 0xE69F00u, 0x56B4E9u};
 
 constexpr double k_first_width = 2.0;
@@ -26,12 +28,25 @@ constexpr double k_paler = 0.5;
 
 /// Open points (circle, square, triangles, diamond, pentagon), then crosses, and only then filled points.
 constexpr std::array k_points{6, 4, 8, 10, 12, 14, 2, 1, 3, 7, 5, 9, 11, 13, 15};
+/// Filled points: circle, triangle, square, diamond, pentagon, triangle.
+constexpr std::array k_marks{7, 9, 5, 13, 15, 11};
 
-// Room for text in the legend, on the generous side: the font depends on the reader's machine.
-constexpr double k_character_cm = 0.19;
+/// Events of models. The place of a name gives its symbol, so that a new name belongs at the end; names beside these
+/// share the symbol after the last.
+constexpr std::array<std::string_view, 36> k_events{
+    "yield", "load-reversal", "reload", "contact-made", "contact-lost", "fully-plastic", "pull-off", "peel", "stick",
+    "growth-on", "growth-off", "zero-porosity", "dent-touched", "low-compressibility", "impingement",
+    // From here on in grey.
+    "jamming", "plastic-softening", "force-extremum", "follow", "retreat", "secondary-onset", "segment-change",
+    "plastic-off", "transition", "caps-intersect", "stiffening", "limit", "full", "singular-growth", "volume-limit",
+    // From here on in red.
+    "radius-limit", "density-limit", "loss-of-uniqueness", "poisson-half", "cap-centre-tensile",
+    "cap-axis-nonpositive"};
+constexpr std::array k_event_colours{0x000000u, 0x909090u, 0x8B0000u};
+
 constexpr double k_sample_cm = 1.6;
+constexpr double k_gap_cm = 0.3;  ///< between columns of the legend
 constexpr double k_heading_cm = 1.7;
-constexpr std::size_t k_longest_name = 56;  ///< of a run, in characters: a line of the legend
 
 /// A colour mixed with a share of grey.
 /// @param grey  0 for black, 255 for white
@@ -45,9 +60,9 @@ constexpr std::size_t k_longest_name = 56;  ///< of a run, in characters: a line
 }
 
 [[nodiscard]] double entry_width(const LegendRow& row) {
-  std::size_t longest = 0;
-  for (const auto& entry : row.entries) longest = std::max(longest, shown_length(entry.title));
-  return k_sample_cm + k_character_cm * static_cast<double>(longest);
+  double widest = 0.0;
+  for (const auto& entry : row.entries) widest = std::max(widest, text_width(entry.title));
+  return k_sample_cm + widest + k_gap_cm;
 }
 
 [[nodiscard]] std::size_t columns_of(const LegendRow& row, double width_cm) {
@@ -81,7 +96,7 @@ constexpr std::size_t k_longest_name = 56;  ///< of a run, in characters: a line
   LegendRow row{"Path", {}};
   for (const Phase phase : k_phases) {
     if (std::ranges::none_of(runs, [=](const RunCurves& run) { return has_phase(run.phases, phase); })) continue;
-    const Stroke stroke = runs.size() > 1 ? Stroke{k_neutral_colour, k_first_width} : palette.particle_line(0);
+    const Stroke stroke = runs.size() > 1 ? Stroke{k_neutral_colour, k_first_width, 0} : palette.particle_line(0);
     row.entries.push_back({std::string(phase_name(phase)), phase_line(stroke, phase)});
   }
   return row;
@@ -90,7 +105,7 @@ constexpr std::size_t k_longest_name = 56;  ///< of a run, in characters: a line
 [[nodiscard]] LegendRow event_row(const std::vector<RunCurves>& runs) {
   LegendRow row{"Events", {}};
   for (const std::string& name : event_names(runs)) {
-    row.entries.push_back({verbatim_text(name), "with points " + event_points(row.entries.size())});
+    row.entries.push_back({verbatim_text(name), event_points(name)});
   }
   return row;
 }
@@ -105,19 +120,20 @@ Palette::Palette(const std::vector<RunCurves>& runs) : run_count_(runs.size()) {
   }
 }
 
-Stroke Palette::line(std::size_t run, unsigned colour) const {
+Stroke Palette::line(std::size_t run, unsigned colour, std::size_t mark) const {
   const double share = run_count_ > 1 ? static_cast<double>(run) / static_cast<double>(run_count_ - 1) : 0.0;
   return {colours_tell_runs() ? colour : mixed_with(255.0, colour, k_palest * share),
-          std::lerp(k_first_width, k_last_width, share)};
+          std::lerp(k_first_width, k_last_width, share), mark};
 }
 
 Stroke Palette::contact_line(std::size_t run, std::string_view contact) const {
   const auto place = static_cast<std::size_t>(std::ranges::find(contacts_, contact) - contacts_.begin());
-  return line(run, colour_of(colours_tell_runs() ? run : place));
+  const std::size_t number = colours_tell_runs() ? run : place;
+  return line(run, colour_of(number), number);
 }
 
 Stroke Palette::particle_line(std::size_t run) const {
-  return line(run, colours_tell_runs() ? colour_of(run) : k_neutral_colour);
+  return colours_tell_runs() ? line(run, colour_of(run), run) : line(run, k_neutral_colour, 0);
 }
 
 unsigned colour_of(std::size_t place) noexcept {
@@ -141,35 +157,21 @@ std::string phase_line(const Stroke& stroke, Phase phase) {
     case Phase::unloading:
       return dashed_line(stroke, "(7,4)");
     case Phase::reloading:
-      return dashed_line({stroke.colour, k_reloading_width * stroke.width}, "(0.8,2.6)");
+      return dashed_line({stroke.colour, k_reloading_width * stroke.width, 0}, "(0.8,2.6)");
   }
   return {};
 }
 
 std::string dashed_line(const Stroke& stroke, std::string_view dash) {
-  return fmt::format("with lines lc rgb '#{:06X}' lw {:.3g} dt {}", stroke.colour, stroke.width, dash);
+  const std::string look = fmt::format("lc rgb '#{:06X}' lw {:.3g} dt {}", stroke.colour, stroke.width, dash);
+  if (stroke.mark == 0) return "with lines " + look;
+  return fmt::format("with linespoints {} pt {} ps 0.45 pn 7", look, k_marks[(stroke.mark - 1) % k_marks.size()]);
 }
 
-std::string event_points(std::size_t place) {
-  return fmt::format("pt {} ps 0.9 lw 1.1 lc rgb '#000000'", point_of(place));
-}
-
-std::size_t shown_length(std::string_view enhanced) {
-  std::size_t length = 0;
-  for (std::size_t k = 0; k < enhanced.size(); ++k) {
-    const char c = enhanced[k];
-    const bool names_a_font = c == '/' && k > 0 && enhanced[k - 1] == '{';
-    if (names_a_font) {
-      k = std::min(enhanced.find_first_of(" }", k), enhanced.size());
-    } else if (c == '\\' && k + 1 < enhanced.size()) {
-      ++length;
-      ++k;
-    } else {
-      const bool goes_on = (static_cast<unsigned char>(c) & 0xC0u) == 0x80u;  // a later byte of a character
-      if (!goes_on && std::string_view("{}^_@&~").find(c) == std::string_view::npos) ++length;
-    }
-  }
-  return length;
+std::string event_points(std::string_view name) {
+  const auto place = static_cast<std::size_t>(std::ranges::find(k_events, name) - k_events.begin());
+  const unsigned colour = k_event_colours[place / k_points.size() % k_event_colours.size()];
+  return fmt::format("with points pt {} ps 0.9 lw 1.1 lc rgb '#{:06X}'", point_of(place), colour);
 }
 
 std::vector<LegendRow> legend_rows(const std::vector<RunCurves>& runs, const Palette& palette) {
@@ -186,6 +188,13 @@ std::size_t line_count(const std::vector<LegendRow>& rows, double width_cm) {
   std::size_t lines = 0;
   for (const LegendRow& row : rows) lines += lines_of(row, width_cm);
   return lines;
+}
+
+Layout layout_of(std::size_t panel_count, const std::vector<LegendRow>& rows) {
+  const bool fits_cell = std::ranges::all_of(
+      rows, [](const LegendRow& row) { return k_heading_cm + entry_width(row) - k_gap_cm <= k_legend_cell_cm; });
+  return arrange(panel_count, line_count(rows, k_legend_strip_cm),
+                 fits_cell ? std::optional(line_count(rows, k_legend_cell_cm)) : std::nullopt);
 }
 
 std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout) {
@@ -207,7 +216,8 @@ std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout
           "set key at screen {:.4f}, {:.4f} left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 "
           "noautotitle\n"
           "plot [0:1] [0:1] NaN, keyentry {} title {}\n",
-          left / layout.width, top / layout.height, row.entries[k].style, label_string(row.entries[k].title));
+          left / layout.width, top / layout.height, row.entries[k].style,
+          label_string(fitted_text(row.entries[k].title, place.width - k_heading_cm - k_sample_cm)));
       if (k == 0) text += "unset label 1\n";
       if ((k + 1) % columns == 0 && k + 1 < row.entries.size()) top -= k_legend_line_cm;
     }

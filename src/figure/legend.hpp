@@ -11,20 +11,20 @@
 
 namespace monograin::figure {
 
-/// Colour (0xRRGGBB) and width of a line.
 struct Stroke {
-  unsigned colour;
+  unsigned colour;  ///< 0xRRGGBB
   double width;
+  std::size_t mark;  ///< number of the sparse points on the line, which also differ in grey print; 0: none
 };
 
-/// gnuplot's line of a phase: loading solid, unloading dashed, reloading as dots wider than the line, which remain
-/// visible on top of dashes where both lines coincide.
+/// gnuplot's line of a phase: loading solid, unloading dashed, reloading as dots wider than the line and without marks,
+/// which remain visible on top of dashes where both lines coincide.
 [[nodiscard]] std::string phase_line(const Stroke& stroke, Phase phase);
 /// gnuplot's line with a dash type of its own.
 [[nodiscard]] std::string dashed_line(const Stroke& stroke, std::string_view dash);
 
-/// Gives each contact class a colour, and each run a shade and a width. If all runs together have one class, runs
-/// differ in colour.
+/// Gives each contact class a colour and marks, and each run a shade and a width. If all runs together have one class,
+/// runs differ in colour and marks.
 class Palette {
  public:
   explicit Palette(const std::vector<RunCurves>& runs);
@@ -36,14 +36,14 @@ class Palette {
   [[nodiscard]] Stroke particle_line(std::size_t run) const;
 
  private:
-  [[nodiscard]] Stroke line(std::size_t run, unsigned colour) const;
+  [[nodiscard]] Stroke line(std::size_t run, unsigned colour, std::size_t mark) const;
   [[nodiscard]] bool colours_tell_runs() const noexcept { return run_count_ > 1 && contacts_.size() == 1; }
 
   std::size_t run_count_;
   std::vector<std::string> contacts_;
 };
 
-/// Colour (0xRRGGBB) with a number; colours differ for the colour-blind and in grey print. After six numbers the
+/// Colour (0xRRGGBB) with a number; colours differ for the colour-blind. After six numbers the
 /// colours come again darker, after twelve paler; after eighteen they repeat.
 [[nodiscard]] unsigned colour_of(std::size_t place) noexcept;
 /// gnuplot's point type with a number; the types repeat after fifteen.
@@ -51,8 +51,11 @@ class Palette {
 /// Colour of items without a colour of their own.
 inline constexpr unsigned k_neutral_colour = 0x303030u;
 
-/// gnuplot's style of the marks of an event. @param place  number of the event in the legend
-[[nodiscard]] std::string event_points(std::size_t place);
+/// gnuplot's style of the points at an event: each name has one symbol, in every figure.
+[[nodiscard]] std::string event_points(std::string_view name);
+
+/// Characters of the longest name of a run: a line of the legend.
+inline constexpr std::size_t k_longest_name = 56;
 
 struct LegendRow {
   struct Entry {
@@ -63,13 +66,12 @@ struct LegendRow {
   std::vector<Entry> entries;
 };
 
-/// Number of visible characters of an enhanced text.
-[[nodiscard]] std::size_t shown_length(std::string_view enhanced);
-
 /// Rows for contacts, runs, phases and events; rows that distinguish nothing are left out.
 [[nodiscard]] std::vector<LegendRow> legend_rows(const std::vector<RunCurves>& runs, const Palette& palette);
 /// Number of lines that rows take in a legend of a given width.
 [[nodiscard]] std::size_t line_count(const std::vector<LegendRow>& rows, double width_cm);
+/// Arranges panels and the legend of the rows on the page.
+[[nodiscard]] Layout layout_of(std::size_t panel_count, const std::vector<LegendRow>& rows);
 /// gnuplot commands that draw the legend in its box of the layout.
 [[nodiscard]] std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout);
 

@@ -1,6 +1,7 @@
 #include "figure/page.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
@@ -12,6 +13,7 @@
 
 #include "figure/figure.hpp"
 #include "figure/gnuplot.hpp"
+#include "figure/text_width.hpp"
 #include "scenario/text_file.hpp"
 
 namespace monograin::figure {
@@ -47,7 +49,7 @@ void make_folder(const fs::path& folder) {
   const auto pixels = [](double cm, double per_cm) { return std::lround(cm * per_cm); };
   switch (format) {
     case Format::svg:
-      return fmt::format("svg enhanced size {},{} font 'Helvetica,13' background 'white'",
+      return fmt::format("svg enhanced size {},{} font 'Helvetica,Arial,sans-serif,13' background 'white'",
                          pixels(layout.width, k_svg_per_cm), pixels(layout.height, k_svg_per_cm));
     case Format::pdf:
       return fmt::format("pdfcairo enhanced size {}cm,{:.4g}cm font 'Helvetica,10'", layout.width, layout.height);
@@ -58,7 +60,7 @@ void make_folder(const fs::path& folder) {
   return {};
 }
 
-/// Power of ten by which the numbers of an axis are divided if they are too long for the room beside it; else 0.
+/// Power of ten by which the numbers of a range are divided if they are too long for the room beside it; else 0.
 [[nodiscard]] int shared_power(const AxisRange& range) {
   constexpr int k_least = -3;  // of the tics' distance, too: 0.0002 is too long
   constexpr int k_most = 4;
@@ -66,6 +68,30 @@ void make_folder(const fs::path& folder) {
   const int power = power_of_ten(std::max(std::abs(range.lowest), std::abs(range.highest)));
   const bool is_fine = range.tic_step > 0.0 && power_of_ten(range.tic_step) < k_least;
   return power < k_least || power > k_most || is_fine ? power : 0;
+}
+
+/// Label of an axis, and the power of ten by which its numbers are divided.
+struct Numbers {
+  std::string label;
+  int power = 0;
+  bool is_in_label = false;  ///< the label's unit has a prefix for the power
+};
+
+/// Numbers with units of SI, such as Pa, become shorter by a prefix: MPa.
+[[nodiscard]] Numbers numbers_of(const Axis& axis) {
+  if (axis.is_logarithmic || !axis.names.empty()) return {axis.label};
+  const int power = shared_power(axis.range);
+  const int thousands = (power >= 0 ? power : power - 2) / 3;
+  constexpr std::array<std::string_view, 9> k_prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
+  constexpr std::array<std::string_view, 5> k_units{" [Pa]", " [N]", " [m]", " [J]", " [s]"};
+  const auto unit = std::ranges::find_if(k_units, [&](std::string_view u) { return axis.label.ends_with(u); });
+  const int prefix = 4 + thousands;
+  if (thousands == 0 || unit == k_units.end() || prefix < 0 || prefix >= static_cast<int>(k_prefixes.size())) {
+    return {axis.label, power};
+  }
+  std::string label = axis.label;
+  label.insert(label.rfind('[') + 1, k_prefixes[static_cast<std::size_t>(prefix)]);
+  return {label, 3 * thousands, true};
 }
 
 /// Tics with numbers that are divided by a power of ten.
@@ -103,15 +129,14 @@ void make_folder(const fs::path& folder) {
   if (!axis.names.empty()) {
     return fmt::format("set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3}\n", name, lowest, highest, tics_of(axis.names));
   }
-  const int power = shared_power(axis.range);
+  const int power = numbers_of(axis).power;
   return fmt::format("set {0}range [{1:.6g}:{2:.6g}]; set {0}tics {3}\n", name, lowest, highest,
                      power == 0 ? fmt::format("{:.6g}", tic_step) : tics_over_power(axis.range, power));
 }
 
-/// Power of ten of an axis's numbers, as a text; empty if they have none.
-[[nodiscard]] std::string power_of(const Axis& axis) {
-  const int power = axis.is_logarithmic || !axis.names.empty() ? 0 : shared_power(axis.range);
-  return power == 0 ? std::string() : fmt::format("10^{{{}}}", power);
+/// Power of ten of an axis's numbers, as a text; empty if they have none beside their label.
+[[nodiscard]] std::string power_of(const Numbers& numbers) {
+  return numbers.power == 0 || numbers.is_in_label ? std::string() : fmt::format("10^{{{}}}", numbers.power);
 }
 
 /// Text at the end of an axis that gives the power of ten of its numbers.
@@ -146,8 +171,10 @@ std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, c
   const Panel& panel = layout.panels[place];
   const Box& axes = panel.axes;
   // Below an axis the power would meet the label; it joins the unit there, or stands in its place.
-  std::string x_label = x.label;
-  std::string x_power = power_of(x);
+  const Numbers along = numbers_of(x);
+  const Numbers up = numbers_of(y);
+  std::string x_label = along.label;
+  std::string x_power = power_of(along);
   if (!x_power.empty() && !x_label.empty()) {
     const std::size_t unit = x_label.rfind(" [");
     if (unit != std::string::npos && x_label.ends_with(']'))
@@ -167,10 +194,17 @@ std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, c
       "set label 2 {} at screen {:.4f}, {:.4f} center rotate by 90\n"
       "{}{}",
       axes.left / layout.width, axes.right() / layout.width, axes.bottom / layout.height, axes.top() / layout.height,
-      axis_text('x', x), axis_text('y', y), label_string(x_label), letter, label_string(y.label),
-      panel.y_label_left / layout.width, (axes.bottom + 0.5 * axes.height) / layout.height,
+      axis_text('x', x), axis_text('y', y), label_string(fitted_text(x_label, axes.width + 2.0 * k_right_cm)), letter,
+      label_string(fitted_text(up.label, axes.height + 2.0 * k_top_cm)), panel.y_label_left / layout.width,
+      (axes.bottom + 0.5 * axes.height) / layout.height,
       power_text(3, x_power, fmt::format("graph 1, screen {:.4f}", (axes.bottom - k_x_label_cm) / layout.height)),
-      power_text(4, power_of(y), "graph -0.01, 1.06"));
+      power_text(4, power_of(up), "graph -0.01, 1.06"));
+}
+
+double note_room(const Layout& layout, std::size_t place) {
+  constexpr double k_share = 0.96;  // of the panel's width, between letter and note's end
+  const double letter = layout.panels.size() > 1 ? text_width("(m) ") : 0.0;
+  return k_share * layout.panels[place].axes.width - letter;
 }
 
 std::string label_string(std::string_view enhanced) {

@@ -29,6 +29,9 @@ struct Axis {
 /// @param place  index of the panel in the layout
 [[nodiscard]] std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, const Axis& y);
 
+/// Width [cm] of the space above a panel beside its letter.
+[[nodiscard]] double note_room(const Layout& layout, std::size_t place);
+
 /// gnuplot's enhanced text, quoted for a label. Blanks are such that no renderer drops them beside a change of font;
 /// hyphens that begin a number or stand between terms become minus signs.
 [[nodiscard]] std::string label_string(std::string_view enhanced);

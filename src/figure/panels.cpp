@@ -8,15 +8,13 @@
 namespace monograin::figure {
 namespace {
 
-constexpr double k_figure_width_cm = 17.0;  // two columns of a journal page
 constexpr double k_cell_height_cm = 6.0;
+constexpr double k_figure_width_cm = 17.0;  // two columns of a journal page
 
-// Room for labels around a plot area.
+// Room for labels at the left and at the bottom of a plot area.
 constexpr double k_left_cm = 2.2;
 constexpr double k_y_label_cm = 0.4;
-constexpr double k_right_cm = 0.45;
 constexpr double k_bottom_cm = 1.35;
-constexpr double k_top_cm = 0.6;
 constexpr double k_legend_margin_cm = 0.3;
 
 constexpr double k_most_intervals = 5.0;  ///< between tics
@@ -98,10 +96,11 @@ AxisRange axis_range(const std::vector<double>& values) {
   return {lowest == 0.0 ? 0.0 : lowest - air, highest == 0.0 ? 0.0 : highest + air, step};
 }
 
-Layout arrange(std::size_t panel_count, std::size_t lines_in_strip, std::size_t lines_in_cell) {
+Layout arrange(std::size_t panel_count, std::size_t lines_in_strip, std::optional<std::size_t> lines_in_cell) {
   const std::size_t columns = panel_count > 1 ? 2 : 1;
   const std::size_t rows = (panel_count + columns - 1) / columns;
-  const bool is_in_cell = panel_count % columns != 0 && height_of(lines_in_cell) <= k_cell_height_cm - k_top_cm;
+  const bool is_in_cell =
+      panel_count % columns != 0 && lines_in_cell && height_of(*lines_in_cell) <= k_cell_height_cm - k_top_cm;
   const double strip = is_in_cell ? k_legend_margin_cm : height_of(lines_in_strip) + 2 * k_legend_margin_cm;
   const double cell_width = k_figure_width_cm / static_cast<double>(columns);
 

@@ -1,6 +1,7 @@
 /// Panels of a figure: scales, layout and ranges of axes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,14 +46,18 @@ struct Layout {
   Box legend;
 };
 
+// Room for labels at the right and at the top of a plot area.
+inline constexpr double k_right_cm = 0.45;
+inline constexpr double k_top_cm = 0.6;
 inline constexpr double k_legend_line_cm = 0.5;
 /// Widths the legend can have; its lines break accordingly.
 inline constexpr double k_legend_strip_cm = 16.4;
 inline constexpr double k_legend_cell_cm = 7.9;
 
 /// Arranges panels and legend on the page.
-/// @param lines_in_strip, lines_in_cell  number of lines of the legend at either width
-[[nodiscard]] Layout arrange(std::size_t panel_count, std::size_t lines_in_strip, std::size_t lines_in_cell);
+/// @param lines_in_strip, lines_in_cell  number of lines of the legend at either width; none if it is wider than a cell
+[[nodiscard]] Layout arrange(std::size_t panel_count, std::size_t lines_in_strip,
+                             std::optional<std::size_t> lines_in_cell);
 
 /// Range of an axis and distance of its tics.
 struct AxisRange {

@@ -36,16 +36,6 @@ constexpr std::string_view k_displacement = ".displacement";
   return names;
 }
 
-/// The first class that moves; the first of all if none does.
-[[nodiscard]] std::string driven_class(const Table& history, const std::vector<std::string>& classes) {
-  const auto moves = [&](const std::string& name) {
-    const auto displacement = history.column(name + std::string(k_displacement));
-    return std::ranges::adjacent_find(displacement, std::ranges::not_equal_to{}) != displacement.end();
-  };
-  const auto found = std::ranges::find_if(classes, moves);
-  return found == classes.end() ? classes.front() : *found;
-}
-
 /// Column of the contact radius; of the deformed particle, if the model tells it apart.
 [[nodiscard]] std::optional<std::size_t> radius_of(const Table& table, const std::string& contact) {
   const auto deformed = table.find(contact + ".contact_radius_deformed");
@@ -89,20 +79,6 @@ class StateReader {
   return curve;
 }
 
-/// True for a corner of the program, which needs no mark: the curves turn there.
-[[nodiscard]] bool is_of_program(std::string_view event) { return event == "step-end" || event == "until-met"; }
-
-/// Contact classes of an event; an event of two classes ("axial/lateral") is marked on both.
-[[nodiscard]] std::vector<std::string> classes_of_event(std::string_view cell) {
-  std::vector<std::string> names;
-  for (std::size_t slash = cell.find('/'); slash != std::string_view::npos; slash = cell.find('/')) {
-    names.emplace_back(cell.substr(0, slash));
-    cell.remove_prefix(slash + 1);
-  }
-  names.emplace_back(cell);
-  return names;
-}
-
 [[nodiscard]] std::vector<EventMark> event_marks(const Table& events, const std::string& driven) {
   const auto name = events.find("event");
   const auto contact_class = events.find("class");
@@ -133,6 +109,56 @@ class StateReader {
   }
 }
 
+/// True if one curve hides the other in every panel: they differ by less than the width of a line.
+[[nodiscard]] bool coincide(const ContactCurve& a, const ContactCurve& b) {
+  constexpr double k_line = 0.003;  // of the greatest value
+  return std::ranges::all_of(k_quantities, [&](Quantity quantity) {
+    double greatest = 0.0;
+    double difference = 0.0;
+    for (std::size_t row = 0; row < a.states.size(); ++row) {
+      const double one = a.states[row][quantity];
+      const double other = b.states[row][quantity];
+      if (std::isfinite(one) != std::isfinite(other)) return false;
+      if (!std::isfinite(one)) continue;
+      greatest = std::max(greatest, std::abs(one));
+      difference = std::max(difference, std::abs(one - other));
+    }
+    return difference <= k_line * greatest;
+  });
+}
+
+[[nodiscard]] std::vector<ContactCurve>::iterator contact_named(RunCurves& run, const std::string& name) {
+  return std::ranges::find(run.contacts, name, &ContactCurve::name);
+}
+
+/// Makes one contact of two in all runs that have them, if their curves lie on each other there.
+/// @param first, second  copies, because the names change. @return whether it did
+bool join(std::vector<RunCurves>& runs, std::string first, std::string second) {
+  const bool are_alike = std::ranges::all_of(runs, [&](RunCurves& run) {
+    const auto a = contact_named(run, first);
+    const auto b = contact_named(run, second);
+    if (a == run.contacts.end() || b == run.contacts.end()) return a == b;
+    return coincide(*a, *b);
+  });
+  if (!are_alike) return false;
+  for (RunCurves& run : runs) {
+    const auto b = contact_named(run, second);
+    if (b == run.contacts.end()) continue;
+    run.contacts.erase(b);
+    contact_named(run, first)->name += " = " + second;
+  }
+  return true;
+}
+
+void join_contacts(std::vector<RunCurves>& runs) {
+  for (std::size_t a = 0; a < runs.front().contacts.size(); ++a) {
+    for (std::size_t b = a + 1; b < runs.front().contacts.size();) {
+      const std::vector<ContactCurve>& contacts = runs.front().contacts;
+      if (!join(runs, contacts[a].name, contacts[b].name)) ++b;
+    }
+  }
+}
+
 }  // namespace
 
 Table read_table(const fs::path& file) {
@@ -147,6 +173,29 @@ std::vector<std::string> references_of(const Table& history) {
   const Model* model = find_model(history.header_value("model"));
   return model == nullptr ? std::vector<std::string>{} : reference_texts(*model);
 }
+
+std::vector<std::string> classes_of_event(std::string_view cell) {
+  std::vector<std::string> names;
+  for (std::size_t slash = cell.find('/'); slash != std::string_view::npos; slash = cell.find('/')) {
+    names.emplace_back(cell.substr(0, slash));
+    cell.remove_prefix(slash + 1);
+  }
+  names.emplace_back(cell);
+  return names;
+}
+
+std::optional<std::string> driven_class(const Table& history) {
+  const std::vector<std::string> classes = contact_classes(history);
+  if (classes.empty()) return std::nullopt;
+  const auto moves = [&](const std::string& name) {
+    const auto displacement = history.column(name + std::string(k_displacement));
+    return std::ranges::adjacent_find(displacement, std::ranges::not_equal_to{}) != displacement.end();
+  };
+  const auto found = std::ranges::find_if(classes, moves);
+  return found == classes.end() ? classes.front() : *found;
+}
+
+bool is_of_program(std::string_view event) { return event == "step-end" || event == "until-met"; }
 
 std::vector<Phase> phases_along(std::span<const double> displacements) {
   std::vector<Phase> phases(displacements.size(), Phase::loading);
@@ -194,7 +243,7 @@ RunCurves read_run(const fs::path& run) {
         fmt::format("{}: a curve needs two rows, the history has {}", file.string(), history.row_count()));
   }
 
-  const std::string driven = driven_class(history, classes);
+  const std::string driven = *driven_class(history);
   RunCurves curves{.name = folder.filename().string(),
                    .references = references_of(history),
                    .radius = header_scale(history, "R0"),
@@ -222,6 +271,7 @@ std::vector<RunCurves> read_runs(const std::vector<fs::path>& runs) {
   for (std::size_t k = 0; k < runs.size(); ++k) {
     if (std::ranges::count(names, names[k]) > 1) curves[k].name = runs[k].generic_string();
   }
+  join_contacts(curves);
   return curves;
 }
 

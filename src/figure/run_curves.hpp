@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "history/table.hpp"
@@ -18,6 +19,15 @@ namespace monograin::figure {
 
 /// References of the model that a history's header names, one per line; none if this version has no such model.
 [[nodiscard]] std::vector<std::string> references_of(const Table& history);
+
+/// True for a corner of the program, which needs no mark: the curves turn there.
+[[nodiscard]] bool is_of_program(std::string_view event);
+
+/// Contact classes of an event's cell: "axial/lateral" has two, an event of the particle an empty one.
+[[nodiscard]] std::vector<std::string> classes_of_event(std::string_view cell);
+
+/// The first contact class that moves; the first of all if none does. None without contacts.
+[[nodiscard]] std::optional<std::string> driven_class(const Table& history);
 
 enum class Quantity { force, pressure, area, apparent_radius };
 inline constexpr std::array k_quantities{Quantity::force, Quantity::pressure, Quantity::area,
@@ -71,7 +81,8 @@ struct RunCurves {
 /// @throws FigureError when a file cannot be read, or does not hold a curve of a contact
 [[nodiscard]] RunCurves read_run(const std::filesystem::path& run);
 
-/// Reads several runs; runs of the same name are named by their paths.
+/// Reads several runs; runs of the same name are named by their paths. Contacts whose curves lie on each other in every
+/// run become one, with the names of all.
 [[nodiscard]] std::vector<RunCurves> read_runs(const std::vector<std::filesystem::path>& runs);
 
 }  // namespace monograin::figure

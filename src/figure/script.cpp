@@ -37,15 +37,14 @@ void append_curves(std::vector<std::string>& plots, const std::vector<RunCurves>
 }
 
 void append_events(std::vector<std::string>& plots, const std::vector<RunCurves>& runs, Quantity quantity) {
-  const auto names = event_names(runs);
-  for (std::size_t place = 0; place < names.size(); ++place) {
+  for (const std::string& name : event_names(runs)) {
     const bool is_here = std::ranges::any_of(runs, [&](const RunCurves& run) {
-      return std::ranges::any_of(
-          run.events, [&](const EventMark& mark) { return mark.name == names[place] && is_marked(mark, quantity); });
+      return std::ranges::any_of(run.events,
+                                 [&](const EventMark& mark) { return mark.name == name && is_marked(mark, quantity); });
     });
     if (!is_here) continue;
-    plots.push_back(fmt::format("data index {} using 1:{} with points {}", gnuplot_string(block_name(names[place])),
-                                data_column(quantity), event_points(place)));
+    plots.push_back(fmt::format("data index {} using 1:{} {}", gnuplot_string(block_name(name)), data_column(quantity),
+                                event_points(name)));
   }
 }
 
@@ -97,8 +96,7 @@ std::string script_text(const std::vector<RunCurves>& runs, const Scales& scales
   const Palette palette(runs);
   const auto rows = legend_rows(runs, palette);
   const auto quantities = shown_quantities(runs);
-  const Layout layout =
-      arrange(quantities.size(), line_count(rows, k_legend_strip_cm), line_count(rows, k_legend_cell_cm));
+  const Layout layout = layout_of(quantities.size(), rows);
 
   std::string text = page_head(format, layout, figure_name, data_name);
   for (std::size_t k = 0; k < quantities.size(); ++k) {

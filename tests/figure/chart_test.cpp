@@ -8,7 +8,9 @@
 #include <set>
 #include <string_view>
 
+#include "catalogue.hpp"
 #include "figure/legend.hpp"
+#include "figure/run_curves.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace monograin::figure::chart_test {
@@ -199,7 +201,43 @@ TEST(Chart, LeavesColoursThatOthersAskFor) {
   second.colour = 0;
   const std::string script = script_of(chart_of({first, second}));
   EXPECT_NE(script.find("'panel 1 series 1.' with lines lc rgb '#D55E00'"), std::string::npos) << script;
-  EXPECT_NE(script.find("'panel 1 series 2.' with lines lc rgb '#0072B2'"), std::string::npos) << script;
+  EXPECT_NE(script.find("'panel 1 series 2.' with linespoints lc rgb '#0072B2'"), std::string::npos) << script;
+}
+
+TEST(Chart, MarksLinesThatDifferByTheirColourAlone) {
+  Chart chart = chart_of({series("a"), series("b"), series("c", ChartSeries::Style::dashed), series("d")});
+  const std::string script = script_of(chart);
+  EXPECT_NE(script.find("'panel 1 series 1.' with lines "), std::string::npos) << script;
+  EXPECT_NE(script.find("'panel 1 series 2.' with linespoints "), std::string::npos) << script;
+  EXPECT_NE(script.find("'panel 1 series 3.' with lines "), std::string::npos) << "its dashes tell it: " << script;
+  EXPECT_EQ(count(script, "pt 7 ps 0.45"), 2U) << "in the panel and in the legend: " << script;
+  EXPECT_EQ(count(script, "pt 9 ps 0.45"), 2U) << script;
+  chart.panels.push_back({.x = {.label = "x"}, .y = {.label = "y"}, .series = {chart.panels[0].series[1]}});
+  chart.panels[0].series.resize(1);
+  EXPECT_EQ(count(script_of(chart), "linespoints"), 0U) << "alone in its panel";
+}
+
+TEST(Chart, DrawsEventsWithTheSymbolsOfTheirNames) {
+  ChartSeries yield = series("yield", ChartSeries::Style::events);
+  ChartSeries made = series("contact-made", ChartSeries::Style::events);
+  for (const auto& order : {std::vector{yield, made}, std::vector{made, yield}}) {
+    const std::string script = script_of(chart_of(order));
+    EXPECT_EQ(count(script, event_points("yield")), 2U) << script;
+    EXPECT_EQ(count(script, event_points("contact-made")), 2U) << script;
+    EXPECT_EQ(count(script, "'Events'"), 1U) << script;
+    EXPECT_EQ(count(script, "'Points'"), 0U) << script;
+  }
+}
+
+TEST(Chart, HasASymbolForEachEventOfAModel) {
+  std::set<std::string_view> names;
+  std::set<std::string> symbols{event_points("no event of a model")};
+  for (const Model& model : model_catalogue()) {
+    for (const Term& event : model.events) {
+      if (!is_of_program(event.name)) names.insert(event.name);
+    }
+  }
+  for (const std::string_view name : names) EXPECT_TRUE(symbols.insert(event_points(name)).second) << name;
 }
 
 TEST(Chart, MarksErrorsThatALogarithmicAxisCannotShow) {
@@ -254,13 +292,16 @@ TEST(Chart, KeepsItsNoteBesideThePowerOfTenOfItsAbscissa) {
   EXPECT_NE(script.find("'x [10^{−7}]"), std::string::npos) << script;
 }
 
-TEST(Chart, PutsThePowerOfTenOfItsAbscissaBesideTheUnit) {
+TEST(Chart, PutsThePowerOfTenOfItsAbscissaIntoTheUnit) {
   Chart chart = chart_of({series("a")});
   chart.panels[0].x.label = "Displacement [m]";
   chart.panels[0].series[0].x = {0.0, 1e-7, 0.5e-7};
   const std::string script = script_of(chart);
-  EXPECT_NE(script.find("Displacement [10^{−7} m]"), std::string::npos) << script;
-  EXPECT_EQ(script.find("×10"), std::string::npos) << script;
+  EXPECT_NE(script.find("'Displacement [nm]'"), std::string::npos) << script;
+  EXPECT_NE(script.find("'100' 1e-07"), std::string::npos) << script;
+  chart.panels[0].x.label = "Area [m^2]";
+  EXPECT_NE(script_of(chart).find("Area [10^{−7} m^2]"), std::string::npos) << "a prefix belongs to the metre";
+  EXPECT_EQ(script_of(chart).find("×10"), std::string::npos);
 }
 
 TEST(Chart, DividesNumbersThatNeedFourDecimals) {
@@ -300,10 +341,21 @@ TEST(Label, KeepsItsBlanksInEveryRenderer) {
   }
 }
 
-TEST(Label, IsAsLongAsWhatItShows) {
-  EXPECT_EQ(shown_length("{/:Italic ν} = 0.3"), 7U);
-  EXPECT_EQ(shown_length("Γ_0/{/:Italic σ}_{y0}"), 6U);
-  EXPECT_EQ(shown_length(verbatim_text("a_b")), 3U);
+TEST(Chart, MakesANoteThatIsTooWideSmaller) {
+  Chart chart = chart_of({series("a")});
+  EXPECT_EQ(script_of(chart).find("{/*"), std::string::npos);
+  chart.panels[0].note = std::string(100, 'm');
+  EXPECT_NE(script_of(chart).find("{/*0.39 m"), std::string::npos) << script_of(chart);
+}
+
+TEST(Chart, PutsALegendThatIsWiderThanACellBelowThePanels) {
+  Chart chart = chart_of({series("a")});
+  chart.panels.resize(3, chart.panels.front());
+  const std::string beside = script_of(chart);
+  chart.panels[0].series[0].legend = "an entry that is wider than a cell";
+  const std::string below = script_of(chart);
+  EXPECT_NE(beside.find("size 643,465"), std::string::npos) << beside;
+  EXPECT_EQ(below.find("size 643,465"), std::string::npos) << below;
 }
 
 }  // namespace

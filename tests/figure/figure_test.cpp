@@ -160,6 +160,20 @@ TEST_F(Figure, NeedsNoEvents) {
   EXPECT_EQ(read_text(in_folder("die.gp")).find("Events"), std::string::npos);
 }
 
+TEST_F(Figure, DrawsContactsThatLieOnEachOtherAsOne) {
+  const std::string head =
+      "time[s],step,row,punch.displacement[m],punch.force[N],anvil.displacement[m],anvil.force[N],"
+      "stop.displacement[m],stop.force[N]\n0,1,0,0,0,0,0,0,0\n";
+  write(in_folder("alike/history.csv"), head + "1,1,0,0.001,50,0,50.01,0,50\n");
+  draw_runs({in_folder("alike")}, in_folder("alike.svg"));
+  EXPECT_NE(read_text(in_folder("alike.gp")).find("title 'punch = anvil = stop'"), std::string::npos);
+  EXPECT_EQ(read_text(in_folder("alike.gp")).find("'anvil'"), std::string::npos);
+  write(in_folder("apart/history.csv"), head + "1,1,0,0.001,50,0,51,0,50\n");
+  draw_runs({in_folder("alike"), in_folder("apart")}, in_folder("apart.svg"));
+  EXPECT_NE(read_text(in_folder("apart.gp")).find("title 'punch = stop'"), std::string::npos);
+  EXPECT_NE(read_text(in_folder("apart.gp")).find("title 'anvil'"), std::string::npos);
+}
+
 TEST_F(Figure, LeavesOutWhatARunDoesNotHave) {
   write(in_folder("hertz/history.csv"), k_hertz_history);
   EXPECT_EQ(fault_of({in_folder("hertz")}, in_folder("hertz.svg")), "no fault");
@@ -265,6 +279,7 @@ TEST_F(Figure, OfAModelWithoutWallsShowsItsOwnColumns) {
   EXPECT_NE(script.find("Coordination number"), std::string::npos);
   EXPECT_NE(script.find("jamming"), std::string::npos);
   EXPECT_EQ(script.find("step-end"), std::string::npos);
+  EXPECT_NE(script.find("'Events'"), std::string::npos);
   EXPECT_EQ(script.find("first"), std::string::npos);  // one run needs no name
   draw_runs({in_folder("first"), in_folder("second") / "history.csv"}, in_folder("q.svg"));
   EXPECT_NE(read_text(in_folder("q.gp")).find("second"), std::string::npos);
@@ -286,6 +301,16 @@ TEST_F(Figure, OfAMaterialPointGrowsTheWayItsProgramBegins) {
   draw_runs({in_folder("pulled")}, in_folder("q.svg"));
   EXPECT_NE(read_text(in_folder("q.dat")).find("0.25 4\n"), std::string::npos);
   EXPECT_NE(read_text(in_folder("q.gp")).find("tension positive"), std::string::npos);
+}
+
+TEST_F(Figure, LeavesOutAPanelWithoutAnyValue) {
+  write(in_folder("dense") / "history.csv",
+        "time[s],step,row,strain_axial[-],stress_axial[Pa],p[Pa],q[Pa],relative_density[-]\n"
+        "0,1,0,0,0,0,0,nan\n1,1,0,-0.25,-4e6,-3e6,1e6,nan\n");
+  draw_runs({in_folder("dense")}, in_folder("p.svg"));
+  const std::string script = read_text(in_folder("p.gp"));
+  EXPECT_NE(script.find("'(c)'"), std::string::npos) << script;
+  EXPECT_EQ(script.find("'(d)'"), std::string::npos) << script;
 }
 
 TEST_F(Figure, DoesNotMixModelsWithAndWithoutWalls) {

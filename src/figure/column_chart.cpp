@@ -1,0 +1,235 @@
+#include "figure/column_chart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "figure/figure.hpp"
+#include "figure/legend.hpp"
+#include "figure/page.hpp"
+#include "figure/run_curves.hpp"
+#include "history/table.hpp"
+#include "scenario/units.hpp"
+#include "scenario/words.hpp"
+
+namespace monograin::figure {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view k_results = "results.csv";
+/// Columns of a sweep's results before and after those of its keys.
+constexpr std::string_view k_before_keys = "run";
+constexpr std::string_view k_after_keys = "status";
+
+[[nodiscard]] bool is_bare(std::string_view unit) { return unit.empty() || unit == "-"; }
+
+/// Index of a column that a file must have. @param may_hold_words  true for a key of a sweep
+[[nodiscard]] std::size_t column_in(const Table& table, const std::string& name, const fs::path& file,
+                                    bool may_hold_words) {
+  if (const auto found = table.find(name)) {
+    if (may_hold_words || !table.columns()[*found].holds_words()) return *found;
+    throw FigureError(fmt::format("{}: column '{}' holds words; expected numbers", file.string(), shown(name)));
+  }
+  std::vector<std::string_view> names;
+  for (const Column& column : table.columns()) names.push_back(column.name);
+  throw FigureError(fmt::format("{}: has no column '{}'{}", file.string(), shown(name), did_you_mean(name, names)));
+}
+
+/// SI value of one unit of a dimension; none if it has no such unit.
+[[nodiscard]] std::optional<double> factor_of(const std::string& unit, Dimension dimension, const Table& table) {
+  if (dimension == Dimension::none) return std::nullopt;
+  return parse_quantity("1 " + unit, dimension, table.header_number("R0")).value;
+}
+
+/// The dimension of which a column's unit is the SI unit.
+[[nodiscard]] Dimension dimension_of(std::string_view unit) {
+  for (const Dimension dimension : {Dimension::length, Dimension::stress, Dimension::force, Dimension::time,
+                                    Dimension::surface_energy, Dimension::velocity, Dimension::angle}) {
+    if (dimension_info(dimension).si == unit) return dimension;
+  }
+  return Dimension::none;
+}
+
+[[nodiscard]] ColumnAxis axis_of(const Column& column, const std::string& unit, const Table& table) {
+  ColumnAxis axis{.unit = is_bare(column.unit) ? std::string() : column.unit, .dimension = dimension_of(column.unit)};
+  if (unit.empty() || unit == column.unit) return axis;
+  const auto factor = factor_of(unit, axis.dimension, table);
+  if (!factor) {
+    throw FigureError(fmt::format("'{}' is no unit of '{}'", shown(unit), column.heading()));
+  }
+  axis.unit = unit;
+  axis.factor = *factor;
+  return axis;
+}
+
+[[nodiscard]] ChartAxis shown_axis(const Column& column, const ColumnAxis& axis) {
+  const std::string name = verbatim_text(column.name);
+  ChartAxis shown{.label = axis.unit.empty() ? name : fmt::format("{} [{}]", name, verbatim_text(axis.unit))};
+  if (!column.holds_words()) return shown;
+  shown.lowest = 0.5;
+  shown.highest = static_cast<double>(column.labels.size()) + 0.5;
+  for (const std::string& label : column.labels) shown.names.push_back(short_text(label));
+  return shown;
+}
+
+/// Values of a column in the units of its axis; words are numbered from 1.
+[[nodiscard]] std::vector<double> values_of(const Table& table, std::size_t column, const ColumnAxis& axis) {
+  std::vector<double> values;
+  const double first = table.columns()[column].holds_words() ? 1.0 : 0.0;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    values.push_back(table.at(row, column) / axis.factor + first);
+  }
+  return values;
+}
+
+struct Pair {
+  std::string x;
+  std::string y;
+};
+
+/// The columns of the panels for a sweep: each key beside the largest value of the first force.
+[[nodiscard]] std::vector<Pair> panels_of_sweep(const Table& results, const ColumnChoice& choice) {
+  const auto& columns = results.columns();
+  const auto is_largest_force = [](const Column& column) {
+    return column.name.starts_with("max.") && column.name.ends_with(".force");
+  };
+  const auto largest = std::ranges::find_if(columns, is_largest_force);
+  const std::string y = !choice.y.empty() ? choice.y : largest != columns.end() ? largest->name : columns.back().name;
+  if (!choice.x.empty()) return {{choice.x, y}};
+  std::vector<Pair> panels;
+  for (const Column& column : columns) {
+    if (column.name == k_after_keys) break;
+    if (column.name != k_before_keys) panels.push_back({column.name, y});
+  }
+  return panels;
+}
+
+[[nodiscard]] std::vector<Pair> panels_of(const Table& table, const ColumnChoice& choice, const fs::path& path) {
+  if (is_sweep(path)) return panels_of_sweep(table, choice);
+  Pair pair{choice.x, choice.y};
+  if (!pair.x.empty() && !pair.y.empty()) return {pair};
+  const auto driven = driven_class(table);
+  if (!driven) throw FigureError(fmt::format("{}: has no contacts; give both columns", path.string()));
+  if (pair.x.empty()) pair.x = *driven + ".displacement";
+  if (pair.y.empty()) pair.y = *driven + ".force";
+  return {pair};
+}
+
+/// True if an event belongs to what a column shows: to its contact, or to the particle.
+[[nodiscard]] bool belongs_to(const Table& events, std::size_t row, std::string_view column) {
+  const auto of_class = events.find("class");
+  if (!of_class || !events.columns()[*of_class].holds_words() || column.find('.') == std::string_view::npos)
+    return true;
+  const std::vector<std::string> classes = classes_of_event(events.word(row, *of_class));
+  return std::ranges::any_of(classes,
+                             [&](const std::string& name) { return name.empty() || column.starts_with(name + "."); });
+}
+
+void add_events(ChartPanel& panel, const Table& events, const Pair& pair, const ColumnAxis& x_axis,
+                const ColumnAxis& y_axis) {
+  const auto name = events.find("event");
+  const auto x = events.find(pair.x);
+  const auto y = events.find(pair.y);
+  if (!name || !x || !y || events.row_count() == 0 || !events.columns()[*name].holds_words()) return;
+  const std::vector<double> along = values_of(events, *x, x_axis);
+  const std::vector<double> up = values_of(events, *y, y_axis);
+  for (std::size_t row = 0; row < events.row_count(); ++row) {
+    if (belongs_to(events, row, pair.y)) add_event(panel.series, events.word(row, *name), along[row], up[row]);
+  }
+}
+
+}  // namespace
+
+void add_event(std::vector<ChartSeries>& series, std::string_view event, double x, double y) {
+  if (is_of_program(event)) return;
+  auto found = std::ranges::find(series, event, &ChartSeries::legend);
+  if (found == series.end()) {
+    found = series.insert(
+        series.end(),
+        {.legend = std::string(event), .style = ChartSeries::Style::events, .colour = {}, .x = {}, .y = {}});
+  }
+  found->x.push_back(x);
+  found->y.push_back(y);
+}
+
+bool is_sweep(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return path.filename() == k_results;
+  return fs::exists(path / k_results, ignored) && !fs::exists(path / "history.csv", ignored);
+}
+
+fs::path recorded_table(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return path;
+  return path / (is_sweep(path) ? k_results : "history.csv");
+}
+
+ColumnChart column_chart(const std::vector<fs::path>& paths, const ColumnChoice& choice) {
+  ColumnChart figure;
+  std::vector<Pair> pairs;
+  for (const fs::path& path : paths) {
+    const fs::path file = recorded_table(path);
+    const Table table = read_table(file);
+    std::ranges::move(references_of(table), std::back_inserter(figure.chart.references));
+    const bool is_first = pairs.empty();
+    if (is_first) pairs = panels_of(table, choice, path);
+    const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+    std::error_code ignored;
+    const Table events =
+        !is_sweep(path) && fs::exists(folder / "events.csv", ignored) ? read_table(folder / "events.csv") : Table{};
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const std::size_t x = column_in(table, pairs[k].x, file, is_sweep(path));
+      const std::size_t y = column_in(table, pairs[k].y, file, false);
+      const ColumnAxis x_axis = axis_of(table.columns()[x], "", table);
+      const ColumnAxis y_axis = axis_of(table.columns()[y], choice.unit, table);
+      if (is_first) {
+        figure.chart.panels.push_back(
+            {.x = shown_axis(table.columns()[x], x_axis), .y = shown_axis(table.columns()[y], y_axis)});
+        figure.x = x_axis;
+        figure.y = y_axis;
+      } else if (shown_axis(table.columns()[x], x_axis).names != figure.chart.panels[k].x.names) {
+        throw FigureError(fmt::format("{}: column '{}' has other words", file.string(), pairs[k].x));
+      }
+      figure.chart.panels[k].series.push_back(
+          {.legend = paths.size() > 1 ? short_text(folder.filename().string(), k_longest_name) : std::string(),
+           .style = is_sweep(path) ? ChartSeries::Style::points : ChartSeries::Style::phases,
+           .colour = {},
+           .x = values_of(table, x, x_axis),
+           .y = values_of(table, y, y_axis)});
+      add_events(figure.chart.panels[k], events, pairs[k], x_axis, y_axis);
+    }
+  }
+  return figure;
+}
+
+void add_points(ColumnChart& figure, const MeasuredPoints& points) {
+  const auto in_axis = [](const MeasuredPoints::Axis& measured, const ColumnAxis& axis) {
+    double factor = 1.0;
+    const bool are_bare = is_bare(measured.unit) && axis.unit.empty();
+    if (!are_bare && measured.unit != axis.unit) {
+      const auto si = factor_of(measured.unit, axis.dimension, Table{});
+      if (!si) {
+        throw FigureError(fmt::format("'{}': its unit '{}' is none of an axis in {}", shown(measured.name),
+                                      shown(measured.unit), axis.unit.empty() ? "numbers" : axis.unit));
+      }
+      factor = *si / axis.factor;
+    }
+    std::vector<double> values = measured.values;
+    for (double& value : values) value *= factor;
+    return values;
+  };
+  const ChartSeries series{.legend = points.legend,
+                           .style = ChartSeries::Style::points,
+                           .colour = {},
+                           .x = in_axis(points.x, figure.x),
+                           .y = in_axis(points.y, figure.y)};
+  for (ChartPanel& panel : figure.chart.panels) panel.series.push_back(series);
+}
+
+}  // namespace monograin::figure
