@@ -22,7 +22,7 @@ _monograin() {
     run) options="--output --set --plot --quiet --help" ;;
     check) options="--set --help" ;;
     models) options="--parameters --help" ;;
-    plot) options="--output --profile --help" ;;
+    plot) options="--output --profile --x --y --unit --data --help" ;;
     atlas) options="--plots --output --list --help" ;;
     compare) options="--x --y --tol --help" ;;
     calibrate) options="--output --confidence --report --quiet --strict --help" ;;

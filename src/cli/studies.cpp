@@ -10,12 +10,15 @@
 #include "cli/commands.hpp"
 #include "cli/data_folder.hpp"
 #include "cli/terminal.hpp"
+#include "figure/column_chart.hpp"
 #include "figure/figure.hpp"
+#include "figure/page.hpp"
 #include "history/compare.hpp"
 #include "history/run_files.hpp"
 #include "scenario/words.hpp"
 #include "study/atlas/atlas.hpp"
 #include "study/atlas/profile.hpp"
+#include "study/calibrate/data_report.hpp"
 #include "system/resolution.hpp"
 #include "verify/regress/regress.hpp"
 
@@ -30,6 +33,12 @@ struct PlotOptions {
   std::vector<std::string> runs;
   std::string output;
   std::optional<double> profile;  ///< [s]
+  figure::ColumnChoice columns;
+  std::vector<std::string> data;
+
+  [[nodiscard]] bool has_own_axes() const {
+    return !columns.x.empty() || !columns.y.empty() || !columns.unit.empty() || !data.empty();
+  }
 };
 
 int plot_profile(const PlotOptions& options) {
@@ -49,6 +58,23 @@ int plot_profile(const PlotOptions& options) {
   return k_success;
 }
 
+/// Chart of chosen columns, with measured data.
+figure::ColumnChart column_chart_of(const PlotOptions& options, const std::vector<fs::path>& runs) {
+  try {
+    figure::ColumnChart chart = figure::column_chart(runs, options.columns);
+    for (const std::string& file : options.data) {
+      DataReport data = report_of_file(file, {{}, {}, chart.x.dimension, chart.y.dimension});
+      const auto axis = [](DataAxis& read) {
+        return figure::MeasuredPoints::Axis{read.name, read.unit, std::move(read.values)};
+      };
+      figure::add_points(chart, {figure::short_text(fs::path(file).stem().string()), axis(data.x), axis(data.y)});
+    }
+    return chart;
+  } catch (const FigureError& error) {
+    throw UsageError(error.what());
+  }
+}
+
 int plot(const PlotOptions& options) {
   std::vector<fs::path> runs(options.runs.begin(), options.runs.end());
   for (const fs::path& run : runs) {
@@ -58,10 +84,15 @@ int plot(const PlotOptions& options) {
           fmt::format("{}: expected the folder of a run; 'monograin run --plot' draws a scenario", run.string()));
     }
   }
+  if (options.profile && options.has_own_axes()) throw UsageError("--profile has axes of its own");
   if (options.profile) return plot_profile(options);
   const fs::path first = fs::is_directory(runs.front()) ? runs.front() : runs.front().parent_path();
   const fs::path output = options.output.empty() ? first / "figure.svg" : fs::path(options.output);
-  draw_runs(runs, output);
+  if (options.has_own_axes() || std::ranges::any_of(runs, figure::is_sweep)) {
+    figure::draw_chart(column_chart_of(options, runs).chart, "columns of runs", output);
+  } else {
+    draw_runs(runs, output);
+  }
   say("figure -> {}\n", output.string());
   return k_success;
 }
@@ -223,7 +254,8 @@ void add_plot_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<PlotOptions>();
   CLI::App* command = app.add_subcommand(
       "plot", "Draw recorded runs: force, pressure, contact area, apparent radius; or stress of a packing");
-  command->add_option("RUN", options->runs, "Folders of runs, or their history.csv")->required();
+  command->add_option("RUN", options->runs, "Folders of runs, or their history.csv; or the folder of a sweep")
+      ->required();
   command->add_option("-o,--output", options->output,
                       "Figure to write: .svg, .pdf or .png [figure.svg in the first run's folder]");
   command
@@ -231,6 +263,16 @@ void add_plot_command(CLI::App& app, Action& action) {
           "--profile", options->profile,
           "Instant [s], 0 or later: draw pressure and surface under the contacts instead, and write them as CSV")
       ->check(CLI::NonNegativeNumber);
+  command->add_option(
+      "--x", options->columns.x,
+      "Column, with or without its unit, for one panel [displacement of the driven walls; each key of a "
+      "sweep]");
+  command->add_option("--y", options->columns.y,
+                      "Column over it [force of the driven walls; the largest first force of a sweep]");
+  command->add_option("--unit", options->columns.unit, "Unit of the column over it, e.g. kN [that of the file]");
+  command->add_option("--data", options->data,
+                      "File of measured data to draw as points, read as by monograin data; its columns are found by "
+                      "the dimensions of the axes");
   command->footer("Example: monograin plot runs/die -o die.pdf");
   command->callback([options, &action] { action = [options] { return plot(*options); }; });
 }

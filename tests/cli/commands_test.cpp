@@ -310,6 +310,22 @@ TEST_F(Commands, PlotDrawsRecordedRunsInEveryFormat) {
   EXPECT_EQ(monograin("plot runs/nowhere").code, 2);
 }
 
+TEST_F(Commands, PlotDrawsAnyColumnsWithMeasuredData) {
+  write_text(path("small.toml"), k_small);
+  ASSERT_EQ(monograin("run small.toml").code, 0);
+  write_text(path("measured.csv"), "force[kN],displacement[um]\n0,0\n0.001,10\n");
+  const Outcome outcome = monograin("plot runs/small --unit mN --data measured.csv -o f.svg");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(text("f.gp").find("'measured'"), std::string::npos) << text("f.gp");
+  EXPECT_NE(text("f.gp").find("axial.force [mN]"), std::string::npos) << text("f.gp");
+  EXPECT_NE(text("f.dat").find("\n1e-05 1000\n"), std::string::npos) << text("f.dat");
+  EXPECT_EQ(monograin("plot runs/small --x time --y axial.overlap[m] --unit mm -o g.svg").code, 0);
+  for (const char* wrong : {"--y axial.fore", "--unit mm", "--x time --data measured.csv", "--x time --profile 0.1"}) {
+    EXPECT_EQ(monograin(std::string("plot runs/small -o h.svg ") + wrong).code, 2) << wrong << text("stderr.txt");
+  }
+  EXPECT_FALSE(fs::exists(path("h.svg")));
+}
+
 TEST_F(Commands, PlotDrawsProfilesAtAnInstant) {
   write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml").code, 0);

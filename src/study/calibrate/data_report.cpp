@@ -71,10 +71,10 @@ std::vector<DataBranch> branches_of(const std::vector<double>& x) {
   return branches;
 }
 
-/// Number of the first numeric column with a unit of the dimension.
-std::optional<std::size_t> column_of(const TableLayout& layout, Dimension dimension) {
+/// Number of the first numeric column with a unit of the dimension. @param taken  number of a column that is left out
+std::optional<std::size_t> column_of(const TableLayout& layout, Dimension dimension, std::size_t taken = 0) {
   for (std::size_t k = 0; k < layout.units.size(); ++k) {
-    if (layout.is_numeric[k] && is_unit_of(layout.units[k], dimension)) return k + 1;
+    if (k + 1 != taken && layout.is_numeric[k] && is_unit_of(layout.units[k], dimension)) return k + 1;
   }
   return std::nullopt;
 }
@@ -191,11 +191,11 @@ DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
     const auto found = std::find(is_numeric.begin() + static_cast<std::ptrdiff_t>(begin), is_numeric.end(), true);
     return static_cast<std::size_t>(found - is_numeric.begin()) + 1;
   };
-  std::size_t x = choice.x.empty() ? column_of(report.layout, Dimension::length).value_or(next_numeric(0))
+  std::size_t x = choice.x.empty() ? column_of(report.layout, choice.x_dimension).value_or(next_numeric(0))
                                    : first.columns.front().number;
   std::size_t y =
       choice.y.empty()
-          ? column_of(report.layout, Dimension::force).value_or(next_numeric(std::min(x, is_numeric.size())))
+          ? column_of(report.layout, choice.y_dimension, x).value_or(next_numeric(std::min(x, is_numeric.size())))
           : first.columns.back().number;
   x = std::min(x, is_numeric.size());
   y = std::min(y, is_numeric.size());

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "catalogue.hpp"
 #include "figure/chart.hpp"
 #include "scenario/table_layout.hpp"
 #include "study/calibrate/calibration.hpp"
@@ -50,11 +51,13 @@ struct DataReport {
   std::vector<std::string> remarks;  ///< how a calibration interprets x and y, or why it would refuse them
 };
 
-/// The columns to use as x and y: a heading or a number. Empty: the first length and the first force, else the first
-/// two columns of numbers.
+/// The columns to use as x and y: a heading or a number. Empty: the first columns of the dimensions, else the first two
+/// columns of numbers.
 struct DataChoice {
   std::string x;
   std::string y;
+  Dimension x_dimension = Dimension::length;
+  Dimension y_dimension = Dimension::force;
 };
 
 /// Reads a table of measured data. @throws ScenarioError with its faults
