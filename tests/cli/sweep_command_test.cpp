@@ -127,11 +127,19 @@ std::string index_file(const std::string& changed = k_indices) {
   return changed + sweep.substr(sweep.find("[scenario]"));
 }
 
+TEST_F(SweepCommand, LeavesResultsThatPlotDraws) {
+  write_text(path("indices.toml"), index_file());
+  ASSERT_EQ(monograin("sweep indices.toml").code, 0) << text("stderr.txt");
+  ASSERT_EQ(monograin("plot runs/indices -o f.svg").code, 0) << text("stderr.txt");
+  EXPECT_NE(text("f.gp").find("material.yield\\_stress [MPa]"), std::string::npos) << text("f.gp");
+  EXPECT_NE(text("f.gp").find("max.axial.force [N]"), std::string::npos) << text("f.gp");
+}
+
 TEST_F(SweepCommand, SaysWhichKeyTheSpreadIsDueTo) {
   write_text(path("indices.toml"), index_file());
   ASSERT_EQ(monograin("sensitivity indices.toml").code, 0) << text("stderr.txt");
   const std::string shown = text("stdout.txt");
-  EXPECT_NE(shown.find("max.axial.force, 16 samples\n"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("max.axial.force, 16 samples, 95 % intervals\n"), std::string::npos) << shown;
   EXPECT_NE(shown.find("\nmaterial.yield_stress "), std::string::npos) << shown;
   const Table table = read_csv(path("runs/indices/sensitivity.csv"));
   ASSERT_EQ(table.row_count(), 6U);

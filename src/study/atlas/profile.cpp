@@ -116,10 +116,11 @@ Table contact_profiles(const CheckedScenario& scenario, double time) {
 fs::path draw_profiles(const Table& profiles, const fs::path& output) {
   const double length = profiles.header_number("R0").value_or(1.0);
   const std::optional<double> yield_stress = profiles.header_number("Y");
-  const std::string distance = "distance from the middle {/:Italic r}/{/:Italic R}_0";
-  figure::ChartPanel pressure{.x = {.label = distance},
-                              .y = {.label = yield_stress ? "pressure {/:Italic p}/{/:Italic Y}" : "pressure [Pa]"}};
-  figure::ChartPanel surface{.x = {.label = distance}, .y = {.label = "height {/:Italic z}/{/:Italic R}_0"}};
+  const std::string distance = "Distance from the middle {/:Italic r} / {/:Italic R}_0";
+  figure::ChartPanel pressure{
+      .x = {.label = distance},
+      .y = {.label = yield_stress ? "Pressure {/:Italic p} / {/:Italic Y}" : "Pressure {/:Italic p} [Pa]"}};
+  figure::ChartPanel surface{.x = {.label = distance}, .y = {.label = "Height {/:Italic z} / {/:Italic R}_0"}};
   const Column& classes = profiles.columns()[0];
   double highest = 0.0;
   double lowest = 0.0;

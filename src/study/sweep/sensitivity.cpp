@@ -66,11 +66,24 @@ namespace fs = std::filesystem;
 
 using Style = figure::ChartSeries::Style;
 
+[[nodiscard]] std::string interval_text(const ResultSensitivity& found) {
+  return fmt::format("{:g} % intervals", 100.0 * found.confidence);
+}
+
+/// The formula of a result, as a note of its panel.
+[[nodiscard]] std::string note_of(const ResultSensitivity& found) {
+  constexpr std::size_t k_longest = 50;  // in letters as small as can be read
+  return figure::short_text(found.result, k_longest);
+}
+
 /// Panel of first-order and total indices, each with its interval; a colour for each factor.
 [[nodiscard]] figure::ChartPanel index_panel(const Sweep& sweep, const ResultSensitivity& found) {
-  figure::ChartPanel panel{.x = {.label = "Index", .lowest = 0.5, .highest = 2.5, .names = {"first order", "total"}},
+  figure::ChartPanel panel{.x = {.label = "Index; bars: " + interval_text(found),
+                                 .lowest = 0.5,
+                                 .highest = 2.5,
+                                 .names = {"first order", "total"}},
                            .y = {.label = "Share of the variance"},
-                           .note = figure::short_text(found.result)};
+                           .note = note_of(found)};
   const std::size_t count = sweep.factors.size();
   for (std::size_t k = 0; k < count; ++k) {
     const std::string legend = figure::verbatim_text(short_name(sweep, k));
@@ -90,9 +103,9 @@ using Style = figure::ChartSeries::Style;
 }
 
 [[nodiscard]] figure::ChartPanel effect_panel(const Sweep& sweep, const ResultSensitivity& found) {
-  figure::ChartPanel panel{.x = {.label = "Mean size of the effects", .lowest = 0.0},
+  figure::ChartPanel panel{.x = {.label = "Mean size of the effects; bars: " + interval_text(found), .lowest = 0.0},
                            .y = {.label = "Their standard deviation", .lowest = 0.0},
-                           .note = figure::short_text(found.result)};
+                           .note = note_of(found)};
   for (std::size_t k = 0; k < sweep.factors.size(); ++k) {
     const auto& [size, lower, upper] = found.morris.mean_size[k];
     const double spread = found.morris.spread[k];
@@ -121,6 +134,7 @@ using Style = figure::ChartSeries::Style;
   }
   Table table(std::move(columns));
   table.header = {{"sweep", sweep.name}, {"sweep_digest", sweep.digest}, {"design", sweep.design}};
+  table.header.emplace_back("confidence of the intervals", fmt::format("{}", found.front().confidence));
   for (std::size_t r = 0; r < found.size(); ++r) {
     table.header.emplace_back("samples of " + found[r].result, fmt::format("{}", found[r].samples()));
     for (std::size_t k = 0; k < sweep.factors.size(); ++k) {
@@ -202,7 +216,7 @@ std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const fs::pa
   std::vector<ResultSensitivity> found;
   for (const std::string& formula : sweep.results) {
     const std::vector<double> values = values_of(formula, results);
-    ResultSensitivity result{.result = formula};
+    ResultSensitivity result{.result = formula, .confidence = confidence};
     if (is_morris(sweep)) {
       result.morris = morris_effects(sweep.points, values, confidence);
     } else {
@@ -219,7 +233,8 @@ std::string sensitivity_text(const Sweep& sweep, const std::vector<ResultSensiti
   for (const SweepFactor& factor : sweep.factors) width = std::max(width, factor.key.size());
   std::string text;
   for (const ResultSensitivity& result : found) {
-    text += fmt::format("{}{}, {} samples\n", text.empty() ? "" : "\n", result.result, result.samples());
+    text += fmt::format("{}{}, {} samples, {}\n", text.empty() ? "" : "\n", result.result, result.samples(),
+                        interval_text(result));
     if (is_morris(sweep)) {
       text += fmt::format("{:<{}}  {:>12}  {:>25}  {:>12}  {:>12}\n", "key", width, "mean size", "interval", "mean",
                           "deviation");

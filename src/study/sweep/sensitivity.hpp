@@ -15,7 +15,8 @@ inline constexpr const char* k_sensitivities_file = "sensitivity.csv";
 
 /// One result with its indices or its effects, depending on the design; the other member is empty.
 struct ResultSensitivity {
-  std::string result;  ///< its formula
+  std::string result;       ///< its formula
+  double confidence = 0.0;  ///< level of the two-sided intervals
   SobolIndices sobol{};
   MorrisEffects morris{};
   std::vector<std::string> warnings{};  ///< why they are not to be trusted, a sentence each
