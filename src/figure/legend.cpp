@@ -97,7 +97,9 @@ constexpr double k_heading_cm = 1.7;
   for (const Phase phase : k_phases) {
     if (std::ranges::none_of(runs, [=](const RunCurves& run) { return has_phase(run.phases, phase); })) continue;
     const Stroke stroke = runs.size() > 1 ? Stroke{k_neutral_colour, k_first_width, 0} : palette.particle_line(0);
-    row.entries.push_back({std::string(phase_name(phase)), phase_line(stroke, phase)});
+    const bool is_hidden = phase == Phase::unloading && std::ranges::all_of(runs, &RunCurves::unloads_as_it_loads);
+    row.entries.push_back(
+        {fmt::format("{}{}", phase_name(phase), is_hidden ? " = loading" : ""), phase_line(stroke, phase)});
   }
   return row;
 }

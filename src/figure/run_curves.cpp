@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string_view>
 #include <system_error>
@@ -109,21 +110,61 @@ class StateReader {
   }
 }
 
-/// True if one curve hides the other in every panel: they differ by less than the width of a line.
-[[nodiscard]] bool coincide(const ContactCurve& a, const ContactCurve& b) {
+/// True if two curves hide each other: they differ by less than the width of a line.
+[[nodiscard]] bool hide_each_other(std::span<const double> a, std::span<const double> b) {
   constexpr double k_line = 0.003;  // of the greatest value
-  return std::ranges::all_of(k_quantities, [&](Quantity quantity) {
-    double greatest = 0.0;
-    double difference = 0.0;
-    for (std::size_t row = 0; row < a.states.size(); ++row) {
-      const double one = a.states[row][quantity];
-      const double other = b.states[row][quantity];
-      if (std::isfinite(one) != std::isfinite(other)) return false;
-      if (!std::isfinite(one)) continue;
-      greatest = std::max(greatest, std::abs(one));
-      difference = std::max(difference, std::abs(one - other));
-    }
-    return difference <= k_line * greatest;
+  double greatest = 0.0;
+  double difference = 0.0;
+  for (std::size_t row = 0; row < a.size(); ++row) {
+    if (std::isfinite(a[row]) != std::isfinite(b[row])) return false;
+    if (!std::isfinite(a[row])) continue;
+    greatest = std::max(greatest, std::abs(a[row]));
+    difference = std::max(difference, std::abs(a[row] - b[row]));
+  }
+  return difference <= k_line * greatest;
+}
+
+[[nodiscard]] std::vector<double> values_of(const ContactCurve& contact, Quantity quantity) {
+  std::vector<double> values;
+  for (const ContactState& state : contact.states) values.push_back(state[quantity]);
+  return values;
+}
+
+[[nodiscard]] bool coincide(const ContactCurve& a, const ContactCurve& b) {
+  return std::ranges::all_of(
+      k_quantities, [&](Quantity quantity) { return hide_each_other(values_of(a, quantity), values_of(b, quantity)); });
+}
+
+/// Values of a contact in the rows of unloading, and those of loading at the same displacements.
+struct BothWays {
+  std::vector<double> unloading;
+  std::vector<double> loading;
+};
+
+[[nodiscard]] BothWays both_ways(const ContactCurve& contact, const std::vector<Phase>& phases, Quantity quantity) {
+  std::vector<ContactState> loading{contact.states.front()};
+  for (std::size_t row = 1; row < phases.size(); ++row) {
+    if (phases[row] == Phase::loading) loading.push_back(contact.states[row]);
+  }
+  BothWays values;
+  for (std::size_t row = 1; row < phases.size(); ++row) {
+    const ContactState& state = contact.states[row];
+    const auto next = std::ranges::lower_bound(loading, state.displacement, {}, &ContactState::displacement);
+    if (phases[row] != Phase::unloading || next == loading.begin() || next == loading.end()) continue;
+    const auto last = std::prev(next);
+    const double share = (state.displacement - last->displacement) / (next->displacement - last->displacement);
+    values.unloading.push_back(state[quantity]);
+    values.loading.push_back(std::lerp((*last)[quantity], (*next)[quantity], share));
+  }
+  return values;
+}
+
+[[nodiscard]] bool unloads_as_it_loads(const RunCurves& run) {
+  return std::ranges::all_of(run.contacts, [&](const ContactCurve& contact) {
+    return std::ranges::all_of(k_quantities, [&](Quantity quantity) {
+      const BothWays values = both_ways(contact, run.phases, quantity);
+      return hide_each_other(values.unloading, values.loading);
+    });
   });
 }
 
@@ -259,6 +300,7 @@ RunCurves read_run(const fs::path& run) {
   std::vector<double> displacements;
   for (const ContactState& state : curves.contacts.front().states) displacements.push_back(state.displacement);
   curves.phases = phases_along(displacements);
+  curves.unloads_as_it_loads = unloads_as_it_loads(curves);
   return curves;
 }
 

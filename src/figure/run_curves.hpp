@@ -73,6 +73,7 @@ struct RunCurves {
   std::vector<ContactCurve> contacts;    ///< in the order of the history's columns; at least one
   std::vector<Phase> phases;             ///< of the path that ends at each row
   std::vector<EventMark> events;         ///< of contacts, material and particle; not of the program
+  bool unloads_as_it_loads = false;      ///< the curves of unloading lie on those of loading, in every panel
 
   [[nodiscard]] bool has(Quantity quantity) const;
 };

@@ -174,6 +174,16 @@ TEST_F(Figure, DrawsContactsThatLieOnEachOtherAsOne) {
   EXPECT_NE(read_text(in_folder("apart.gp")).find("title 'anvil'"), std::string::npos);
 }
 
+TEST_F(Figure, SaysWhereUnloadingLiesOnLoading) {
+  const std::string loading = "time[s],step,row,axial.displacement[m],axial.force[N]\n0,1,0,0,0\n1,1,0,0.001,10\n";
+  write(in_folder("elastic/history.csv"), loading + "2,2,0,0.0005,5\n");
+  draw_runs({in_folder("elastic")}, in_folder("elastic.svg"));
+  EXPECT_NE(read_text(in_folder("elastic.gp")).find("title 'unloading = loading'"), std::string::npos);
+  write(in_folder("plastic/history.csv"), loading + "2,2,0,0.0005,0\n");
+  draw_runs({in_folder("plastic")}, in_folder("plastic.svg"));
+  EXPECT_NE(read_text(in_folder("plastic.gp")).find("title 'unloading'"), std::string::npos);
+}
+
 TEST_F(Figure, LeavesOutWhatARunDoesNotHave) {
   write(in_folder("hertz/history.csv"), k_hertz_history);
   EXPECT_EQ(fault_of({in_folder("hertz")}, in_folder("hertz.svg")), "no fault");
