@@ -6,19 +6,11 @@
 namespace monograin::python {
 namespace {
 
-constexpr std::string_view k_override = "--set '";
-
-/// Name of the text with the fault. An override, which the program calls `--set`, comes from `replace` in Python.
-std::string file_of(const SourceLocation& where) {
-  if (!where.file.starts_with(k_override)) return where.file;
-  return "replace '" + where.file.substr(k_override.size());
-}
-
 void raise_faults(const ScenarioError& error) {
   const py::module_ errors = py::module_::import("monograin.errors");
   py::list faults;
   for (const Fault& fault : error.faults()) {
-    faults.append(errors.attr("Fault")(file_of(fault.where), fault.where.line, fault.where.column, fault.message));
+    faults.append(errors.attr("Fault")(fault.where.file, fault.where.line, fault.where.column, fault.message));
   }
   const py::object type = errors.attr("ScenarioError");
   PyErr_SetObject(type.ptr(), type(faults).ptr());

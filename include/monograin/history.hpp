@@ -28,7 +28,8 @@ class History {
   /// A history without columns.
   History();
   /// A history of your own curves, such as measured ones.
-  /// @throws std::invalid_argument if the columns differ in length
+  /// @throws std::invalid_argument if columns differ in length, two have the same name and unit, or a value of a column
+  ///         of words is neither the index of a label nor NaN
   explicit History(std::vector<Column> columns);
   /// A history over a recorded table, which it shares.
   explicit History(std::shared_ptr<const Table> table);
@@ -54,7 +55,7 @@ class History {
   [[nodiscard]] std::span<const double> operator[](std::string_view name) const& { return column(name).values; }
   /// Copy of the values, which would otherwise end with a history that is a temporary, such as that of a call of run().
   [[nodiscard]] std::vector<double> operator[](std::string_view name) const&& { return column(name).values; }
-  /// Words of a column, one for each row, such as the regimes of a contact.
+  /// Words of a column, one for each row, such as the regimes of a contact; empty where the value is NaN.
   /// @throws std::out_of_range for an unknown name, or a column of numbers
   [[nodiscard]] std::vector<std::string_view> words(std::string_view name) const&;
   [[nodiscard]] std::vector<std::string> words(std::string_view name) const&& {

@@ -37,6 +37,7 @@ class PreparedScenario {
   /// Reads and checks a scenario.
   /// @param keys  keys whose values are numbers, spelled as for Scenario::set()
   /// @throws ScenarioError with all faults of the scenario, or with the keys that do not hold a number or stand twice
+  /// @throws std::invalid_argument without keys
   PreparedScenario(const Scenario& scenario, std::vector<std::string> keys);
 
   /// The keys that vary, in the order in which run() and map() take their values.
@@ -58,8 +59,9 @@ class PreparedScenario {
   /// @param samples   shape (samples, keys), row by row, in SI units
   /// @param formulas  formulas over the columns of the history with one value each, such as `max(axial.force)` or
   ///                  `end(apparent_radius) / 1e-3`; functions are those of figures: max, min, end, sqrt, ...
-  /// @throws std::invalid_argument for a formula that cannot be read, names an unknown column or has a value for each
-  ///         row, and if the number of values is not a multiple of the number of keys
+  /// @throws std::invalid_argument for a formula that cannot be read, names an unknown column or one of words, or has a
+  ///         value for each row, if the number of values is not a multiple of the number of keys, and for fewer threads
+  ///         than 0
   [[nodiscard]] MapResult map(std::span<const double> samples, std::span<const std::string> formulas,
                               const MapOptions& options = {}) const;
 

@@ -4,6 +4,8 @@
 #include <concepts>
 #include <filesystem>
 #include <initializer_list>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,8 +37,10 @@ class Scenario {
   /// @param origin     file name that messages show and that names the scenario; file names in the scenario are
   ///                   relative to its folder
   /// @param overrides  keys set on top of the text, as `key=value` with a value in TOML: see overrides()
+  /// @param files      texts of the files that the scenario names, by these names; no file is read then
   [[nodiscard]] static Scenario parse(std::string text, std::string origin = "scenario.toml",
-                                      std::vector<std::string> overrides = {});
+                                      std::vector<std::string> overrides = {},
+                                      std::optional<std::map<std::string, std::string>> files = {});
 
   /// Sets a key to a number in SI units, a text ("10 mm", "die"), a switch, or a list. The last value set wins.
   ///
@@ -76,6 +80,8 @@ class Scenario {
   [[nodiscard]] const std::string& origin() const noexcept { return origin_; }
   /// Keys that were set, as `key=value` with a value in TOML, in the order of the calls.
   [[nodiscard]] const std::vector<std::string>& overrides() const noexcept { return overrides_; }
+  /// Texts of the files that the scenario names, by these names; none: the files are read beside origin().
+  [[nodiscard]] const std::optional<std::map<std::string, std::string>>& files() const noexcept { return files_; }
 
  private:
   Scenario& set_value(std::string_view key, std::string_view value);
@@ -83,6 +89,7 @@ class Scenario {
   std::string text_;
   std::string origin_ = "scenario.toml";
   std::vector<std::string> overrides_;
+  std::optional<std::map<std::string, std::string>> files_;
 };
 
 /// Reads a scenario file. Its content is checked by validate() and run(), not here.

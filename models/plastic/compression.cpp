@@ -60,7 +60,8 @@ Configuration configuration_named(std::string_view word) {
   for (const Configuration configuration : {Configuration::simple, Configuration::die, Configuration::hydrostatic}) {
     if (name(configuration) == word) return configuration;
   }
-  throw std::invalid_argument("no configuration '" + std::string(word) + "' of one kind of compression");
+  throw std::invalid_argument("configuration = '" + std::string(word) +
+                              "' is not known; expected one of 'simple', 'die', 'hydrostatic'");
 }
 
 int moving_walls(Configuration configuration) noexcept { return configuration == Configuration::hydrostatic ? 6 : 2; }

@@ -21,7 +21,7 @@ class Fault:
     """One fault of a scenario.
 
     Attributes:
-        file: name of the text with the fault: a file, or ``replace '...'`` for a value given to
+        file: name of the text with the fault: a file, or ``override '...'`` for a value given to
             :meth:`monograin.Scenario.replace`.
         line: line of the fault, from 1.
         column: column of the fault, from 1.

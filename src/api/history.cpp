@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -15,7 +16,20 @@
 namespace monograin {
 namespace {
 
-/// Makes a table of columns. @throws std::invalid_argument if the columns differ in length
+/// @throws std::invalid_argument for a value that is neither the index of a label nor NaN
+void require_labels_of_values(const History::Column& column) {
+  if (column.labels.empty()) return;
+  for (const double value : column.values) {
+    const bool is_index =
+        value >= 0.0 && value < static_cast<double>(column.labels.size()) && value == std::floor(value);
+    if (is_index || std::isnan(value)) continue;
+    throw std::invalid_argument(fmt::format("column '{}' has the value {}; expected indices of its {} labels, or NaN",
+                                            column.name, value, column.labels.size()));
+  }
+}
+
+/// Makes a table of columns.
+/// @throws std::invalid_argument if columns differ in length or have the same name and unit, or labels lack a value
 Table table_of(const std::vector<History::Column>& columns) {
   std::vector<Column> headings;
   for (const History::Column& column : columns) {
@@ -24,7 +38,12 @@ Table table_of(const std::vector<History::Column>& columns) {
                                               columns.front().name, columns.front().values.size(), column.name,
                                               column.values.size()));
     }
+    require_labels_of_values(column);
     headings.push_back({column.name, column.unit, column.labels});
+    const auto is_same = [&](const Column& other) { return other.name == column.name && other.unit == column.unit; };
+    if (std::ranges::count_if(headings, is_same) > 1) {
+      throw std::invalid_argument(fmt::format("there are two columns '{}'; expected one", headings.back().heading()));
+    }
   }
   Table table(std::move(headings));
   std::vector<double> row(columns.size());
@@ -86,7 +105,9 @@ std::vector<std::string_view> History::words(std::string_view name) const& {
         fmt::format("column '{}' holds numbers; expected one of words, such as a regime", found.name));
   }
   std::vector<std::string_view> words;
-  for (const double value : found.values) words.push_back(found.labels.at(static_cast<std::size_t>(value)));
+  for (const double value : found.values) {
+    words.push_back(std::isnan(value) ? std::string_view() : found.labels[static_cast<std::size_t>(value)]);
+  }
   return words;
 }
 

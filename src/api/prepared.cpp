@@ -34,32 +34,47 @@ std::string advice_on(std::string_view name, const std::vector<std::string_view>
   return did_you_mean(name, columns);
 }
 
-/// Names of the columns that runs of a scenario may have: those of a scene, those of each wall alone, which other
-/// numbers may take out of its class, and the derivatives.
-std::vector<std::string> names_of_columns(const CheckedScenario& scenario) {
+/// Names of the columns that runs of a scenario may have.
+struct ColumnNames {
+  std::vector<std::string> numbers;
+  std::vector<std::string> words;
+};
+
+/// Names of the columns of a scene, of each wall alone, which other numbers may take out of its class, and of the
+/// derivatives.
+ColumnNames names_of_columns(const CheckedScenario& scenario) {
   const Scene scene = make_scene(scenario);
   const Table columns = Recorder(*scene.system, {}).take_history();
-  std::vector<std::string> names;
+  ColumnNames found;
   for (const Column& column : columns.columns()) {
+    std::vector<std::string>& names = column.labels.empty() ? found.numbers : found.words;
     names.push_back(column.name);
     const std::size_t point = column.name.find('.');
     if (point == std::string::npos) continue;
     for (const WallSpec& wall : scenario.loading.walls) names.push_back(wall.name + column.name.substr(point));
   }
-  const std::size_t count = names.size();
+  const std::size_t count = found.numbers.size();
   for (const SensitivityKey& key : scenario.sensitivities) {
-    for (std::size_t k = 0; k < count; ++k) names.push_back(fmt::format("d({})/d({})", names[k], key.key));
+    for (std::size_t k = 0; k < count; ++k) {
+      found.numbers.push_back(fmt::format("d({})/d({})", found.numbers[k], key.key));
+    }
   }
-  return names;
+  return found;
 }
 
 /// Checks the names in a formula by the columns that runs may have.
-/// @throws std::invalid_argument for an unknown name
-void check_names(const Expression& formula, std::string_view text, const std::vector<std::string>& columns) {
-  const std::vector<std::string_view> known(columns.begin(), columns.end());
+/// @throws std::invalid_argument for an unknown name, or a column of words
+void check_names(const Expression& formula, std::string_view text, const ColumnNames& columns) {
+  const std::vector<std::string_view> known(columns.numbers.begin(), columns.numbers.end());
   for (const std::string_view name : formula.names()) {
     const std::string_view without_unit = name.substr(0, name.find('['));
     if (std::ranges::find(known, without_unit) != known.end()) continue;
+    if (std::ranges::find(columns.words, without_unit) != columns.words.end()) {
+      throw std::invalid_argument(
+          fmt::format("'{}': column '{}' holds words, and a formula takes numbers; the history of a single run has the "
+                      "words",
+                      text, without_unit));
+    }
     throw std::invalid_argument(fmt::format("'{}': unknown name '{}'{}", text, shown(name), advice_on(name, known)));
   }
 }
@@ -115,8 +130,10 @@ struct PreparedScenario::Content {
 };
 
 PreparedScenario::PreparedScenario(const Scenario& scenario, std::vector<std::string> keys) {
+  if (keys.empty()) throw std::invalid_argument("keys: expected at least one");
   const CheckedScenario all_right = checked(scenario);
-  ScenarioTemplate prepared({.text = all_right.text, .origin = scenario.origin()}, all_right.overrides);
+  ScenarioTemplate prepared({.text = all_right.text, .origin = scenario.origin(), .files = scenario.files()},
+                            all_right.overrides);
   FaultList faults;
   for (auto key = keys.begin(); key != keys.end(); ++key) {
     if (std::find(keys.begin(), key, *key) != key) {
@@ -142,8 +159,12 @@ RunResult PreparedScenario::run(std::span<const double> values, const RunOptions
 MapResult PreparedScenario::map(std::span<const double> samples, std::span<const std::string> formulas,
                                 const MapOptions& options) const {
   const std::size_t width = keys().size();
-  if (width == 0 || samples.size() % width != 0) {
+  if (samples.size() % width != 0) {
     throw std::invalid_argument(fmt::format("{} values are no rows of {}", samples.size(), width));
+  }
+  if (options.threads < 0) {
+    throw std::invalid_argument(
+        fmt::format("threads = {}: expected 0 for one for each core, or more", options.threads));
   }
   std::vector<Expression> expressions;
   for (const std::string& text : formulas) {
@@ -153,7 +174,7 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
       throw std::invalid_argument(fmt::format("'{}': {}", text, error.what()));
     }
   }
-  const std::vector<std::string> columns = names_of_columns(content_->as_it_is());
+  const ColumnNames columns = names_of_columns(content_->as_it_is());
   for (std::size_t k = 0; k < expressions.size(); ++k) check_names(expressions[k], formulas[k], columns);
   const LeftOut left_out = not_needed_by(expressions);
   const bool has_derivatives = std::ranges::any_of(

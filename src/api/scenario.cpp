@@ -35,14 +35,17 @@ bool may_meet(std::string_view a, std::string_view b) {
 }  // namespace
 
 CheckedScenario checked(const Scenario& scenario) {
-  return parse_scenario(scenario.text(), scenario.origin(), scenario.overrides());
+  if (!scenario.files()) return parse_scenario(scenario.text(), scenario.origin(), scenario.overrides());
+  return parse_recorded_scenario(scenario.text(), scenario.origin(), scenario.overrides(), *scenario.files());
 }
 
-Scenario Scenario::parse(std::string text, std::string origin, std::vector<std::string> overrides) {
+Scenario Scenario::parse(std::string text, std::string origin, std::vector<std::string> overrides,
+                         std::optional<std::map<std::string, std::string>> files) {
   Scenario scenario;
   scenario.text_ = std::move(text);
   scenario.origin_ = std::move(origin);
   scenario.overrides_ = std::move(overrides);
+  scenario.files_ = std::move(files);
   return scenario;
 }
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "scenario/words.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -316,7 +317,12 @@ struct PathIntegrals {
 /// Heading of the column of that name in the reference. @throws std::runtime_error if there is none
 [[nodiscard]] std::string heading_of(const Table& a, const std::string& name) {
   const auto index = a.find(name);
-  if (!index) throw std::runtime_error(fmt::format("the first table has no column '{}'", name));
+  if (!index) {
+    std::vector<std::string_view> names;
+    for (const Column& column : a.columns()) names.push_back(column.name);
+    throw std::runtime_error(
+        fmt::format("the first table has no column '{}'{}", shown(name), did_you_mean(name, names)));
+  }
   return a.columns()[*index].heading();
 }
 

@@ -14,7 +14,7 @@
 namespace monograin {
 namespace {
 
-constexpr std::string_view k_prefix = "--set '";
+constexpr std::string_view k_prefix = "override '";
 constexpr std::size_t k_most_path_parts = 32;
 
 std::string origin_of(const std::string& text) { return fmt::format("{}{}'", k_prefix, on_one_line(text)); }

@@ -77,6 +77,22 @@ TEST(PreparedScenario, RefusesAKeyThatIsListedTwice) {
   EXPECT_THROW(static_cast<void>(PreparedScenario(ready_scenario("die.toml"), keys)), ScenarioError);
 }
 
+TEST(PreparedScenario, RefusesToVaryNothingAndToRunOnFewerThreadsThanNone) {
+  EXPECT_THROW(PreparedScenario(ready_scenario("die.toml"), {}), std::invalid_argument);
+  const PreparedScenario prepared(ready_scenario("die.toml"), {"material.yield_stress"});
+  EXPECT_THROW(
+      static_cast<void>(prepared.map(std::vector{45e6}, std::vector<std::string>{"max(axial.force)"}, {.threads = -1})),
+      std::invalid_argument);
+}
+
+TEST(PreparedScenario, TakesTheHeadingOfAColumn) {
+  const PreparedScenario prepared(ready_scenario("hertz.toml"), {"material.youngs_modulus"});
+  const MapResult table =
+      prepared.map(std::vector{1e9}, std::vector<std::string>{"max(axial.force)", "max(axial.force[N])"});
+  EXPECT_GT(table.values[0], 0.0);
+  EXPECT_EQ(table.values[0], table.values[1]);
+}
+
 TEST(PreparedScenario, RefusesValuesThatAreNotAdmissible) {
   const PreparedScenario prepared(ready_scenario("die.toml"), {"material.poisson_ratio"});
   EXPECT_THROW(static_cast<void>(prepared.run(std::vector{0.7})), ScenarioError);
@@ -121,7 +137,7 @@ TEST_P(MapOf, AFewNumbersFindsThoseOfTheWholeRun) {
   const History whole = prepared.run(sample).history;
   std::size_t numbers = 0;
   for (const std::string_view name : whole.names()) {
-    if (name == "row") continue;
+    if (name == "row" || !whole.column(name).labels.empty()) continue;
     const auto values = whole[name];
     double greatest = 0.0;
     for (const double value : values) {
@@ -174,7 +190,7 @@ TEST(PreparedScenario, EndsAMapWhenItIsTold) {
 
 TEST(PreparedScenario, RefusesFormulasWithoutOneValue) {
   const PreparedScenario prepared(ready_scenario("die.toml"), {"material.yield_stress"});
-  for (const char* formula : {"axial.force", "max(axial.forse)", "max("}) {
+  for (const char* formula : {"axial.force", "max(axial.forse)", "max(", "end(axial.regime)"}) {
     EXPECT_THROW(static_cast<void>(prepared.map(std::vector{45e6}, std::vector<std::string>{formula})),
                  std::invalid_argument)
         << formula;

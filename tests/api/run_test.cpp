@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <span>
 #include <sstream>
@@ -134,6 +135,18 @@ TEST(History, OfMeasuredCurvesComparesWithARun) {
 
 TEST(History, RefusesColumnsOfDifferentLengths) {
   EXPECT_THROW(History({{"a", "m", {}, {1.0, 2.0}}, {"b", "m", {}, {1.0}}}), std::invalid_argument);
+}
+
+TEST(History, RefusesTwoColumnsOfOneNameAndUnit) {
+  EXPECT_THROW(History({{"a", "m", {}, {1.0}}, {"a", "m", {}, {2.0}}}), std::invalid_argument);
+}
+
+TEST(History, HasAWordForEveryLabelAndAnEmptyOneForNone) {
+  const History history({{"regime", "", {"open", "elastic"}, {1.0, std::numeric_limits<double>::quiet_NaN(), 0.0}}});
+  EXPECT_EQ(history.words("regime"), (std::vector<std::string_view>{"elastic", "", "open"}));
+  for (const double value : {2.0, -1.0, 0.5}) {
+    EXPECT_THROW(History({{"regime", "", {"open", "elastic"}, {value}}}), std::invalid_argument) << value;
+  }
 }
 
 TEST(Models, HaveKeysWithUnitsAndMeaning) {

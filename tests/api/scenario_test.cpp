@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "api/ready.hpp"
+#include "monograin/prepared.hpp"
 #include "monograin/run.hpp"
 
 namespace monograin {
@@ -180,6 +183,19 @@ TEST(Scenario, OfAFileKnowsItsPlaces) {
   ASSERT_NE(radius, faults.end());
   EXPECT_EQ(radius->where.file, file.string());
   fs::remove(file);
+}
+
+TEST(Scenario, WithItsFilesInMemoryReadsNone) {
+  const Scenario read = ready_scenario("hollomon.toml");
+  const Scenario held =
+      Scenario::parse(read.text(), "nowhere/hollomon.toml", {},
+                      std::map<std::string, std::string>{
+                          {"hollomon-pressure.csv", "delta_max_over_R,p_over_Y\n0,3.6\n0.1,5\n0.3,6\n0.6,6\n"}});
+  EXPECT_GT(std::ranges::max(run(read).history["axial.force"]),
+            2.0 * std::ranges::max(run(held).history["axial.force"]));
+  const PreparedScenario prepared(held, {"material.yield_stress"});
+  EXPECT_EQ(prepared.run(std::vector{30e6}).status, RunStatus::complete);
+  EXPECT_THROW(static_cast<void>(run(Scenario::parse(read.text(), "nowhere/hollomon.toml"))), ScenarioError);
 }
 
 TEST(Scenario, OfAFileThatIsNotThereIsRefusedWithItsName) {

@@ -257,8 +257,9 @@ TEST(CompareTables, GiveOneAreaErrorInAnyUnits) {
 }
 
 TEST(CompareTables, RefusesWhatTheReferenceDoesNotHave) {
-  EXPECT_EQ(fault_of(history(1), history(1), "tme", ""), "the first table has no column 'tme'");
-  EXPECT_EQ(fault_of(history(1), history(1), "time", "forc"), "the first table has no column 'forc'");
+  EXPECT_EQ(fault_of(history(1), history(1), "tme", ""), "the first table has no column 'tme'; did you mean 'time'?");
+  EXPECT_EQ(fault_of(history(1), history(1), "time", "forc"),
+            "the first table has no column 'forc'; did you mean 'force'?");
   EXPECT_EQ(fault_of(history(1), history(1), "regime", ""),
             "column 'regime' of the first table holds words, not numbers");
   EXPECT_EQ(fault_of(Table(std::vector<Column>{{"time", "s", {}}}), history(1), "time", ""),

@@ -182,7 +182,7 @@ def test_a_fault_of_a_replaced_value_names_the_replacement(die):
     with pytest.raises(mg.ScenarioError) as caught:
         die.replace({"material.yield_stress": "30 metres"})
     (fault,) = caught.value.faults
-    assert fault.file == "replace 'material.yield_stress=\"30 metres\"'"
+    assert fault.file == "override 'material.yield_stress=\"30 metres\"'"
 
 
 def test_a_missing_file_is_a_fault(tmp_path):

@@ -166,7 +166,7 @@ TEST_F(PressureTable, MayBeNamedByAnOverride) {
   EXPECT_EQ(
       faults("", {"mdr.pressure_table=q.csv"}),
       std::vector<std::string>{
-          "--set 'mdr.pressure_table=q.csv':1:20: pressure_table = \"q.csv\": there is no such file (q.csv); "
+          "override 'mdr.pressure_table=q.csv':1:20: pressure_table = \"q.csv\": there is no such file (q.csv); "
           "expected a table of two columns such as delta_max_over_R,p_over_Y, its path relative to the scenario's "
           "folder"});
 }

@@ -64,7 +64,7 @@ TEST_P(OverrideFaults, NameTheOverride) {
   const OverrideRow& row = GetParam();
   const std::vector<std::string> faults = faults_of(k_good_scenario, {row.text});
   ASSERT_EQ(faults.size(), 1U) << row.text;
-  EXPECT_EQ(faults[0], std::string("--set '") + row.text + "':" + row.message);
+  EXPECT_EQ(faults[0], std::string("override '") + row.text + "':" + row.message);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -103,14 +103,14 @@ TEST(Overrides, AreReportedAfterTheFile) {
   const std::vector<std::string> faults = faults_of(with_line(13, "duration = 0"), {"particle.radius=0"});
   ASSERT_EQ(faults.size(), 2U);
   EXPECT_TRUE(faults[0].starts_with("die.toml:13:12")) << faults[0];
-  EXPECT_TRUE(faults[1].starts_with("--set 'particle.radius=0':1:17")) << faults[1];
+  EXPECT_TRUE(faults[1].starts_with("override 'particle.radius=0':1:17")) << faults[1];
 }
 
 TEST(Overrides, StayOnOneLineInMessages) {
   const std::vector<std::string> faults = faults_of(k_good_scenario, {"title=3\nx=4", "particle.radius=1\n2"});
   EXPECT_FALSE(faults.empty());
   for (const std::string& fault : faults) {
-    EXPECT_TRUE(fault.starts_with("--set 'particle.radius=1?2':1:17: ")) << fault;
+    EXPECT_TRUE(fault.starts_with("override 'particle.radius=1?2':1:17: ")) << fault;
   }
 }
 

@@ -174,6 +174,9 @@ inline constexpr double k_most_missing = 0.1;
 /// the rest as its author wrote it.
 [[nodiscard]] std::string fitted_scenario_text(const Calibration& calibration, const CalibrationResult& result);
 
+/// Texts of the files that this scenario names, which lie beside it.
+[[nodiscard]] FileTexts fitted_scenario_files(const Calibration& calibration);
+
 /// Parameters, intervals, correlations and residuals as text for the terminal.
 [[nodiscard]] std::string calibration_text(const Calibration& calibration, const CalibrationResult& result);
 

@@ -227,6 +227,12 @@ std::string fitted_scenario_text(const Calibration& calibration, const Calibrati
   return head + with_values(text, edits);
 }
 
+FileTexts fitted_scenario_files(const Calibration& calibration) {
+  FileTexts files;
+  for (const auto& [option, curve] : calibration.scenario.curves) files.emplace(table_name(option), curve.text);
+  return files;
+}
+
 Table fit_table(const Calibration& calibration, const CalibrationResult& result) {
   const MeasuredQuantity& x = calibration.x;
   const MeasuredQuantity& y = calibration.y;
@@ -274,8 +280,8 @@ std::string write_calibration(const Calibration& calibration, const CalibrationR
                               bool has_report) {
   figure::write_whole(folder.path() / "fit.csv", csv_text(fit_table(calibration, result)));
   figure::write_whole(folder.path() / "fitted.toml", fitted_scenario_text(calibration, result));
-  for (const auto& [option, curve] : calibration.scenario.curves) {
-    figure::write_whole(folder.path() / table_name(option), curve.text);
+  for (const auto& [name, text] : fitted_scenario_files(calibration)) {
+    figure::write_whole(folder.path() / name, text);
   }
   figure::write_whole(folder.path() / k_calibration_marker, calibration_json(calibration, result));
   std::string problem = draw_calibration(calibration, result, folder.path());

@@ -176,6 +176,11 @@ class ExpressionParser {
   void name() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]) || text_[at_] == '.')) ++at_;
+    if (at_ < text_.size() && text_[at_] == '[') {
+      const std::size_t end = text_.find(']', at_);
+      if (end == std::string_view::npos) fail("the bracket of the unit is not closed");
+      at_ = end + 1;
+    }
     const std::string_view word = text_.substr(begin, at_ - begin);
     if (!take('(')) {
       program_.push_back({.operation = Operation::name, .name = std::string(word), .offset = begin});

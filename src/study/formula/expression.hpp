@@ -32,7 +32,8 @@ class ExpressionError : public std::runtime_error {
 /// Functions of each value: sqrt, exp, log, abs, sin, cos, tan, atan, sinh, cosh, tanh. Functions of a column: min,
 /// max, last (of its defined values), end (value in the last row, even if undefined). Laws: radius_influence_closed,
 /// radius_influence_integral, radius_influence_projected, with the arguments Poisson's ratio, angle, contact radius/R.
-/// A name consists of letters, digits, `_` and `.` (axial.force), or is any text between backquotes.
+/// A name consists of letters, digits, `_` and `.`, with or without a unit in brackets (axial.force, axial.force[N]),
+/// or is any text between backquotes.
 ///
 /// `a / b * c` is (a / b) * c; `^` binds before them, and from the right.
 class Expression {

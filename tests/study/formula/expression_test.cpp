@@ -67,6 +67,8 @@ TEST(Expression, MakesOneNumberOfAColumn) {
 TEST(Expression, NamesTheColumnsThatItReads) {
   const Expression formula("max(axial.force) / end(`contact radius`) + 2 * axial.force");
   EXPECT_EQ(formula.names(), (std::vector<std::string_view>{"axial.force", "contact radius", "axial.force"}));
+  const Expression heading("max(axial.force[N])*2");
+  EXPECT_EQ(heading.names(), (std::vector<std::string_view>{"axial.force[N]"}));
   const Expression number("sqrt(2) + 1");
   EXPECT_TRUE(number.names().empty());
 }
@@ -103,6 +105,7 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(fault_of("2 c"), "2: expected an operator or the end");
   EXPECT_EQ(fault_of("c + sine(c)"), "4: there is no function 'sine'");
   EXPECT_EQ(fault_of("`c"), "1: the backquote is not closed");
+  EXPECT_EQ(fault_of("c[N"), "1: the bracket of the unit is not closed");
   EXPECT_EQ(fault_of("c * d"), "4: unknown name 'd'");
   EXPECT_EQ(fault_of("axial.x + two"), "13: 3 values do not go with 2");
   EXPECT_EQ(fault_of(std::string(1000, '(')), "0: longer than 400 characters");
