@@ -7,10 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -21,6 +25,7 @@
 #include "elastic/hertz.hpp"
 #include "elastic/line_contact.hpp"
 #include "elastic/nonlocal_law.hpp"
+#include "interruptible.hpp"
 #include "mdr/adhesion.hpp"
 #include "mdr/relaxed_profile.hpp"
 #include "mdr/transforms.hpp"
@@ -33,7 +38,40 @@
 namespace monograin::python {
 namespace {
 
-using Numbers = py::array_t<double>;
+using Array = py::array_t<double>;
+
+}  // namespace
+
+/// Argument of a law: a number, or an array of numbers.
+struct Numbers {
+  Array array = py::reinterpret_steal<Array>(py::handle());
+};
+
+}  // namespace monograin::python
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<monograin::python::Numbers> {
+  PYBIND11_TYPE_CASTER(monograin::python::Numbers, const_name("numbers"));
+
+  /// Floats, integers and plain arrays are taken as they are; monograin._inputs converts, or refuses, whatever else
+  /// there is.
+  bool load(handle source, bool /*convert*/) {
+    const bool is_plain_array =
+        Py_TYPE(source.ptr()) == npy_api::get().PyArray_Type_ &&
+        std::string_view("fiub").find(reinterpret_borrow<array>(source).dtype().kind()) != std::string_view::npos;
+    const bool is_plain = PyFloat_Check(source.ptr()) || PyLong_CheckExact(source.ptr()) || is_plain_array;
+    value.array = is_plain ? monograin::python::Array::ensure(source)
+                           : module_::import("monograin._inputs").attr("numbers")(source);
+    return static_cast<bool>(value.array);
+  }
+};
+
+}  // namespace pybind11::detail
+
+namespace monograin::python {
+namespace {
 
 /// Calls `value` and returns NaN outside the domain of the law (std::domain_error). std::invalid_argument passes on.
 template <class Value>
@@ -60,29 +98,92 @@ void require_poisson_ratio(double nu) {
   }
 }
 
-/// @throws std::invalid_argument for arrays whose shapes do not broadcast as in numpy
-void require_broadcast(std::initializer_list<const Numbers*> arrays) {
-  std::vector<py::ssize_t> sizes;  // of the result, from the last dimension on
-  for (const Numbers* array : arrays) {
-    for (py::ssize_t k = 0; k < array->ndim(); ++k) {
-      const py::ssize_t size = array->shape(array->ndim() - 1 - k);
+/// Elements of arrays that broadcast as in numpy, row by row.
+template <std::size_t N>
+class Elements {
+ public:
+  /// @throws std::invalid_argument for arrays whose shapes do not broadcast
+  explicit Elements(const std::array<const Array*, N>& arrays) {
+    for (const Array* array : arrays) widen(*array);
+    std::ranges::reverse(shape_);
+    index_.resize(shape_.size());
+    for (std::size_t k = 0; k < N; ++k) {
+      next_[k] = static_cast<const char*>(static_cast<const void*>(arrays[k]->data()));
+      strides_[k].resize(shape_.size());
+      const auto missing = shape_.size() - static_cast<std::size_t>(arrays[k]->ndim());
+      for (std::size_t d = missing; d < shape_.size(); ++d) {
+        const auto own = static_cast<py::ssize_t>(d - missing);
+        if (arrays[k]->shape(own) != 1) strides_[k][d] = arrays[k]->strides(own);
+      }
+    }
+  }
+
+  /// Shape of the result.
+  [[nodiscard]] const std::vector<py::ssize_t>& shape() const { return shape_; }
+
+  /// The elements at one place of the result; the next call gives those at the next place.
+  std::array<double, N> take() {
+    std::array<double, N> values{};
+    for (std::size_t k = 0; k < N; ++k) std::memcpy(&values[k], next_[k], sizeof(double));
+    for (std::size_t d = shape_.size(); d-- > 0;) {
+      const bool goes_on = ++index_[d] < shape_[d];
+      for (std::size_t k = 0; k < N; ++k) next_[k] += goes_on ? strides_[k][d] : -strides_[k][d] * (shape_[d] - 1);
+      if (goes_on) break;
+      index_[d] = 0;
+    }
+    return values;
+  }
+
+ private:
+  /// Widens the shape, from the last dimension on, by that of an array.
+  void widen(const Array& array) {
+    for (py::ssize_t k = 0; k < array.ndim(); ++k) {
+      const py::ssize_t size = array.shape(array.ndim() - 1 - k);
       const auto place = static_cast<std::size_t>(k);
-      if (place == sizes.size()) sizes.push_back(1);
-      if (sizes[place] == 1) sizes[place] = size;
-      if (size != 1 && size != sizes[place]) {
-        throw std::invalid_argument("the arrays do not broadcast: one has " + std::to_string(sizes[place]) +
+      if (place == shape_.size()) shape_.push_back(1);
+      if (shape_[place] == 1) shape_[place] = size;
+      if (size != 1 && size != shape_[place]) {
+        throw std::invalid_argument("the arrays do not broadcast: one has " + std::to_string(shape_[place]) +
                                     " elements where another has " + std::to_string(size));
       }
     }
   }
+
+  std::vector<py::ssize_t> shape_;
+  std::vector<py::ssize_t> index_;
+  std::array<std::vector<py::ssize_t>, N> strides_;  ///< [bytes]; 0 along dimensions that an array lacks
+  std::array<const char*, N> next_{};
+};
+
+/// Calls `take` for every place of an array. Many places are filled without the interpreter's lock, until a signal's
+/// handler raises.
+template <class Take>
+void fill(Array& array, Take&& take) {
+  constexpr py::ssize_t k_piece = 2048;
+  double* const values = array.mutable_data();
+  const py::ssize_t count = array.size();
+  if (count <= k_piece) {
+    std::generate_n(values, count, take);
+    return;
+  }
+  SignalWatch watch;
+  {
+    const Unlocked unlocked;
+    for (py::ssize_t begin = 0; begin < count && !watch.has_raised(); begin += k_piece) {
+      std::generate_n(values + begin, std::min(k_piece, count - begin), std::ref(take));
+    }
+  }
+  watch.rethrow();
 }
 
 /// Makes a function of numpy arrays from a function of numbers.
 template <class Function>
 auto vectorized(Function function) {
-  return [function](const auto&... arrays) -> py::object {
-    require_broadcast({&arrays...});
-    return py::vectorize(function)(arrays...);
+  return [function](const auto&... numbers) -> py::object {
+    Elements<sizeof...(numbers)> elements({&numbers.array...});
+    Array result(elements.shape());
+    fill(result, [&] { return std::apply(function, elements.take()); });
+    return elements.shape().empty() ? py::object(py::float_(*result.data())) : py::object(result);
   };
 }
 
@@ -284,17 +385,27 @@ py::object mdr_pull_off(const std::string& quantity, const std::string& profile,
   })(composite_modulus, radius, surface_energy);
 }
 
+/// @throws std::invalid_argument for an array of more or fewer dimensions than one
+std::vector<double> list_of(const Numbers& numbers) {
+  if (numbers.array.ndim() != 1) throw std::invalid_argument("expected samples of shape (n,)");
+  const auto samples = numbers.array.unchecked<1>();
+  std::vector<double> list;
+  for (py::ssize_t k = 0; k < samples.shape(0); ++k) list.push_back(samples(k));
+  return list;
+}
+
 /// Stable states of an adhesive contact with a sampled profile, down to pull-off.
 /// @return contact radii, displacements and forces
-py::tuple mdr_peel_curve(const std::vector<double>& radii, const std::vector<double>& heights, double composite_modulus,
-                         double surface_energy, const std::string& control, std::size_t count) {
+py::tuple mdr_peel_curve(const Numbers& radii, const Numbers& heights, double composite_modulus, double surface_energy,
+                         const std::string& control, std::size_t count) {
   require_positive({{"modulus", composite_modulus}, {"surface_energy", surface_energy}});
-  const std::vector<mdr::PeelState> states = mdr::peel_curve(mdr::RelaxedProfile(radii, heights), composite_modulus,
-                                                             surface_energy, control_named(control), count);
+  const std::vector<mdr::PeelState> states =
+      mdr::peel_curve(mdr::RelaxedProfile(list_of(radii), list_of(heights)), composite_modulus, surface_energy,
+                      control_named(control), count);
   const auto column = [&](double mdr::PeelState::*value) {
-    Numbers numbers(static_cast<py::ssize_t>(states.size()));
-    std::ranges::transform(states, numbers.mutable_data(), value);
-    return numbers;
+    Array array(static_cast<py::ssize_t>(states.size()));
+    std::ranges::transform(states, array.mutable_data(), value);
+    return array;
   };
   return py::make_tuple(column(&mdr::PeelState::contact_radius), column(&mdr::PeelState::displacement_1d),
                         column(&mdr::PeelState::force));

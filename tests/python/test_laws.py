@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import inspect
 import math
+import subprocess
+import sys
+import textwrap
+import time
 import tomllib
 
 import numpy as np
@@ -102,8 +107,79 @@ def test_parameters_that_no_law_has_are_errors():
         laws.similarity.force(1e7, 0.3, 0.01, 1e-4, rule="flat")
     with pytest.raises(ValueError):
         laws.hardening.force(1e7, 1.5, 0.01, 1e-4)
-    with pytest.raises(ValueError):
-        laws.hardening.force(1e7, 0.5, 0.01, 1e-4, configuration="box")
+    for force in (lambda walls: laws.hardening.force(1e7, 0.5, 0.01, 1e-4, configuration=walls), lambda walls: laws.semimech.force(1e9, 0.3, 1e7, 0.01, 1e-4, configuration=walls)):
+        with pytest.raises(ValueError, match="configuration = 'Die' is not known; expected one of 'simple', 'die'"):
+            force("Die")
+
+
+@pytest.mark.parametrize(
+    "wrong", [None, "1 GPa", 1j, [1e9, [1e9, 1e9]], np.array(["1e9"]), np.array(["2020"], dtype="M8"), np.timedelta64(1, "s")]
+)
+def test_arguments_that_are_no_numbers_are_errors_that_name_them(wrong):
+    with pytest.raises(TypeError, match="^modulus: expected (real )?numbers, not"):
+        laws.hertz.force(wrong, 0.01, 1e-4)
+
+
+def test_a_word_of_a_wrong_type_is_an_error_that_names_it():
+    with pytest.raises(TypeError, match="^configuration: expected str, not None"):
+        laws.semimech.force(1e9, 0.3, 1e7, 0.01, 1e-4, configuration=None)
+
+
+def test_masked_elements_are_nan():
+    force = laws.hertz.force(1e9, 0.01, np.ma.array([1e-4, 2e-4], mask=[False, True]))
+    assert_array_equal(force, [laws.hertz.force(1e9, 0.01, 1e-4), np.nan])
+
+
+def test_arrays_of_any_layout_give_the_numbers_of_their_elements():
+    overlap = np.linspace(1e-5, 1e-3, 24).reshape(4, 6)
+    for view in (overlap, overlap[::2, ::-3], overlap.T, np.asfortranarray(overlap), overlap.astype(np.float32)):
+        expected = [[laws.hertz.force(1e9, 0.01, float(value)) for value in row] for row in view]
+        assert_array_equal(laws.hertz.force(1e9, 0.01, view), expected)
+    many = np.linspace(1e-5, 1e-3, 10_000)
+    assert_array_equal(laws.hertz.force(1e9, 0.01, many)[::997], [laws.hertz.force(1e9, 0.01, d) for d in many[::997]])
+    assert laws.hertz.force(1e9, 0.01, np.zeros((0, 3))).shape == (0, 3)
+
+
+def test_other_threads_go_on_during_a_law():
+    overlap = np.linspace(1e-5, 1e-3, 2_000_000)
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        result = pool.submit(laws.semimech.force, 1e9, 0.3, 1e7, 0.01, overlap)
+        counted = 0
+        while not result.done():
+            counted += 1
+            time.sleep(0.001)
+    assert counted > 20
+    assert np.isfinite(result.result()).all()
+
+
+def test_ctrl_c_ends_a_law(tmp_path):
+    code = """
+        import os, signal, threading, time
+        import numpy as np
+        import monograin as mg
+
+        overlap = np.full(60_000_000, 1e-4)
+        threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+        start = time.perf_counter()
+        try:
+            mg.laws.semimech.force(1e9, 0.3, 1e7, 0.01, overlap)
+        except KeyboardInterrupt:
+            print(time.perf_counter() - start)
+        """
+    done = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert 0.4 < float(done.stdout) < 2.0
+
+
+def test_a_module_of_laws_lists_its_laws_only():
+    assert dir(laws.mdr) == sorted(laws.mdr.__all__)
+
+
+def test_curves_of_arrays_can_be_compared():
+    radii = np.linspace(0.0, 1e-3, 101)
+    first, again = (laws.mdr.peel_curve(radii, radii**2 / 0.02, 1e9, 0.1) for _ in range(2))
+    assert first == again
+    assert first != laws.mdr.peel_curve(radii, radii**2 / 0.02, 1e9, 0.2)
 
 
 def test_elastic_and_plastic_contacts_refuse_what_no_material_has():
@@ -259,5 +335,6 @@ def test_every_law_says_what_it_returns_and_in_which_unit():
         assert text.startswith("Returns "), function
         for argument in inspect.signature(function).parameters:
             assert argument in text, f"{function.__module__}.{function.__name__}: {argument}"
+        assert "Source: " in text, function
     for module in modules:
         assert "Source: " in inspect.getdoc(module), module

@@ -13,6 +13,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._inputs import explained
 
 __all__ = [
     "exponent",
@@ -25,8 +26,11 @@ __all__ = [
 ]
 
 
+@explained
 def loading_force(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLike, displacement: ArrayLike) -> Any:
-    """Returns the force of first loading: k d up to delta_t, then k delta_t exp(a (d - delta_t)) (eq. 6).
+    """Returns the force of first loading: k d up to delta_t, then k delta_t exp(a (d - delta_t)).
+
+    Source: Edmans and Sinka (n.d.), eq. 6.
 
     Args:
         stiffness: k, above 0; see :func:`stiffness`.
@@ -37,8 +41,11 @@ def loading_force(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLi
     return _core.laws.compressible_loading_force(stiffness, transition, exponent, displacement)
 
 
+@explained
 def loading_work(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLike, displacement: ArrayLike) -> Any:
     """Returns the work of first loading since first touch.
+
+    Source: Edmans and Sinka (n.d.), the integral of eq. 6.
 
     Args:
         stiffness, transition, exponent, displacement: as in :func:`loading_force`.
@@ -46,6 +53,7 @@ def loading_work(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLik
     return _core.laws.compressible_loading_work(stiffness, transition, exponent, displacement)
 
 
+@explained
 def unloading_force(
     stiffness: ArrayLike,
     transition: ArrayLike,
@@ -57,7 +65,9 @@ def unloading_force(
     unloading_exponent: ArrayLike = 1.5,
     stiffness_ratio: ArrayLike = 1.0,
 ) -> Any:
-    """Returns the force of unloading from a largest displacement, fm ((d - d0)/(dm - d0))^alpha (eq. 13).
+    """Returns the force of unloading from a largest displacement, fm ((d - d0)/(dm - d0))^alpha.
+
+    Source: Edmans and Sinka (n.d.), eqs. 9 and 11 to 14.
 
     Args:
         stiffness, transition, exponent: of first loading, as in :func:`loading_force`.
@@ -72,8 +82,11 @@ def unloading_force(
     )
 
 
+@explained
 def hertz_stiffness(modulus_ratio: ArrayLike, poisson_ratio: ArrayLike) -> Any:
-    """Returns the stiffness k_H of Hertz's law f = k_H d^(3/2) for the same material (eq. 10).
+    """Returns the stiffness k_H of Hertz's law f = k_H d^(3/2) for the same material.
+
+    Source: Edmans and Sinka (n.d.), eq. 10.
 
     Args:
         modulus_ratio: E0/sigma_y0, above 0.
@@ -82,8 +95,11 @@ def hertz_stiffness(modulus_ratio: ArrayLike, poisson_ratio: ArrayLike) -> Any:
     return _core.laws.compressible_hertz_stiffness(modulus_ratio, poisson_ratio)
 
 
+@explained
 def stiffness(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
-    """Returns the stiffness k of the loading law by the source's regression (eq. A.1, one coefficient corrected).
+    """Returns the stiffness k of the loading law by the source's regression.
+
+    Source: Edmans and Sinka (n.d.), eq. A.1, one coefficient corrected.
 
     Args:
         modulus_ratio: E0/sigma_y0; 3 to 500 in the source, not checked.
@@ -92,8 +108,11 @@ def stiffness(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
     return _core.laws.compressible_stiffness(modulus_ratio, shear_ratio)
 
 
+@explained
 def transition(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
-    """Returns the end delta_t of the linear part by the source's regression (eq. A.2, one coefficient corrected).
+    """Returns the end delta_t of the linear part by the source's regression.
+
+    Source: Edmans and Sinka (n.d.), eq. A.2, one coefficient corrected.
 
     Args:
         modulus_ratio, shear_ratio: as in :func:`stiffness`; the regression was fitted for moduli from 4.5 on.
@@ -101,10 +120,17 @@ def transition(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
     return _core.laws.compressible_transition(modulus_ratio, shear_ratio)
 
 
+@explained
 def exponent(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
-    """Returns the exponent a of the loading law by the source's regression (eq. A.3).
+    """Returns the exponent a of the loading law by the source's regression.
+
+    Source: Edmans and Sinka (n.d.), eq. A.3.
 
     Args:
         modulus_ratio, shear_ratio: as in :func:`transition`.
     """
     return _core.laws.compressible_exponent(modulus_ratio, shear_ratio)
+
+
+def __dir__() -> list[str]:
+    return __all__

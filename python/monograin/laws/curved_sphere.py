@@ -14,12 +14,16 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._inputs import explained
 
 __all__ = ["contact_radius", "energy", "force"]
 
 
+@explained
 def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Any:
     """Returns the normal force [N], positive in compression; 0 without contact.
+
+    Source: Agarwal and Gonzalez (2018), eqs. 27, 31 and 35; all terms: eq. 19.
 
     Args:
         modulus: composite modulus E* = E/(1 - nu^2) [Pa], above 0.
@@ -30,8 +34,11 @@ def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: s
     return _core.laws.curved_sphere("force", terms, modulus, radius, overlap)
 
 
+@explained
 def contact_radius(radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Any:
     """Returns the contact radius [m]; 0 without contact.
+
+    Source: Agarwal and Gonzalez (2018), the inverse of eqs. 25, 29 and 33; all terms: eq. 19.
 
     Args:
         radius: R [m], above 0.
@@ -41,10 +48,17 @@ def contact_radius(radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf")
     return _core.laws.curved_sphere("contact_radius", terms, 1.0, radius, overlap)
 
 
+@explained
 def energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Any:
     """Returns the stored elastic energy, the work of the wall since first touch [J].
+
+    Source: Agarwal and Gonzalez (2018), the integral of eqs. 27, 31 and 35; all terms: of eq. 19.
 
     Args:
         modulus, radius, overlap, terms: as in :func:`force`.
     """
     return _core.laws.curved_sphere("energy", terms, modulus, radius, overlap)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -13,10 +13,12 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._inputs import explained
 
 __all__ = ["contact_radius", "force", "mean_pressure", "work"]
 
 
+@explained
 def force(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -26,6 +28,8 @@ def force(
     configuration: str = "simple",
 ) -> Any:
     """Returns the force of one moving wall [N].
+
+    Source: Shahin (2021), eq. 3.45.
 
     Args:
         strength: kappa [Pa], above 0.
@@ -41,10 +45,13 @@ def force(
     return _core.laws.hardening("force", configuration, strength, exponent, radius, displacement)
 
 
+@explained
 def contact_radius(
     exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, configuration: str = "simple"
 ) -> Any:
-    """Returns the contact radius at a moving wall [m] (eq. 3.47).
+    """Returns the contact radius at a moving wall [m].
+
+    Source: Shahin (2021), eq. 3.47.
 
     Args:
         exponent, radius, displacement, configuration: as in :func:`force`.
@@ -52,6 +59,7 @@ def contact_radius(
     return _core.laws.hardening("contact_radius", configuration, 1.0, exponent, radius, displacement)
 
 
+@explained
 def mean_pressure(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -62,12 +70,15 @@ def mean_pressure(
 ) -> Any:
     """Returns the mean pressure under a moving wall [Pa].
 
+    Source: Shahin (2021), eqs. 3.48 to 3.59, corrected.
+
     Args:
         strength, exponent, radius, displacement, configuration: as in :func:`force`.
     """
     return _core.laws.hardening("mean_pressure", configuration, strength, exponent, radius, displacement)
 
 
+@explained
 def work(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -78,7 +89,13 @@ def work(
 ) -> Any:
     """Returns the work of one moving wall since first touch [J].
 
+    Source: Shahin (2021), the integral of eq. 3.45.
+
     Args:
         strength, exponent, radius, displacement, configuration: as in :func:`force`.
     """
     return _core.laws.hardening("work", configuration, strength, exponent, radius, displacement)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -10,12 +10,16 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._inputs import explained
 
 __all__ = ["composite_modulus", "contact_radius", "energy", "force"]
 
 
+@explained
 def composite_modulus(youngs_modulus: ArrayLike, poisson_ratio: ArrayLike) -> Any:
     """Returns the composite modulus E* = E/(1 - nu^2) [Pa] of an elastic body against a rigid one.
+
+    Source: Zunker and Kamrin (2024), Part I, eq. 3 with a rigid second body.
 
     Args:
         youngs_modulus: E [Pa], above 0.
@@ -24,8 +28,11 @@ def composite_modulus(youngs_modulus: ArrayLike, poisson_ratio: ArrayLike) -> An
     return _core.laws.composite_modulus(youngs_modulus, poisson_ratio)
 
 
+@explained
 def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
     """Returns the normal force F = (4/3) E* sqrt(R) delta^(3/2) [N], positive in compression.
+
+    Source: Hertz (1882); Zunker and Kamrin (2024), Part I, eq. 25.
 
     Args:
         modulus: composite modulus E* [Pa], above 0; see :func:`composite_modulus`.
@@ -35,8 +42,11 @@ def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
     return _core.laws.hertz_force(modulus, radius, overlap)
 
 
+@explained
 def contact_radius(radius: ArrayLike, overlap: ArrayLike) -> Any:
     """Returns the contact radius a = sqrt(R delta) [m]; 0 without contact.
+
+    Source: Hertz (1882); Zunker and Kamrin (2024), Part I, eq. 23.
 
     Args:
         radius: R [m], above 0.
@@ -45,8 +55,11 @@ def contact_radius(radius: ArrayLike, overlap: ArrayLike) -> Any:
     return _core.laws.hertz_contact_radius(radius, overlap)
 
 
+@explained
 def energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
     """Returns the stored elastic energy (2/5) F delta [J]; 0 without contact.
+
+    Source: Hertz (1882); the integral of the force, Zunker and Kamrin (2024), Part I, eq. 25.
 
     Args:
         modulus: composite modulus E* [Pa], above 0.
@@ -54,3 +67,7 @@ def energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
         overlap: delta [m].
     """
     return _core.laws.hertz_energy(modulus, radius, overlap)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -13,12 +13,16 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._inputs import explained
 
 __all__ = ["half_width", "strain", "stress"]
 
 
+@explained
 def strain(modulus: ArrayLike, stress: ArrayLike) -> Any:
     """Returns the strain delta/D under a nominal stress.
+
+    Source: Johnson (1985), section 5.6.
 
     Args:
         modulus: composite modulus E* = E/(1 - nu^2) [Pa], above 0.
@@ -27,8 +31,11 @@ def strain(modulus: ArrayLike, stress: ArrayLike) -> Any:
     return _core.laws.line_contact_strain(modulus, stress)
 
 
+@explained
 def half_width(modulus: ArrayLike, stress: ArrayLike) -> Any:
     """Returns the half width of either contact over the radius, b/R = sqrt(8 S/(pi E*)).
+
+    Source: Johnson (1985), section 5.6.
 
     Args:
         modulus, stress: as in :func:`strain`.
@@ -36,11 +43,18 @@ def half_width(modulus: ArrayLike, stress: ArrayLike) -> Any:
     return _core.laws.line_contact_half_width(modulus, stress)
 
 
+@explained
 def stress(modulus: ArrayLike, strain: ArrayLike) -> Any:
     """Returns the nominal stress S [Pa] at a strain, the inverse of :func:`strain`.
+
+    Source: Johnson (1985), section 5.6.
 
     Args:
         modulus: composite modulus E* [Pa], above 0.
         strain: delta/D, from 0 to 0.443.
     """
     return _core.laws.line_contact_stress(modulus, strain)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -10,12 +10,16 @@ from typing import Any, NamedTuple
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._inputs import explained
 
 __all__ = ["PowerLaw", "power_law", "stress"]
 
 
+@explained
 def stress(yield_stress: ArrayLike, strength: ArrayLike, exponent: ArrayLike, plastic_strain: ArrayLike) -> Any:
     """Returns the flow stress [Pa].
+
+    Source: Shahin (2021), eqs. 2.1 to 2.3.
 
     Args:
         yield_stress: Y [Pa], 0 or above.
@@ -40,6 +44,7 @@ class PowerLaw(NamedTuple):
     residual: float
 
 
+@explained
 def power_law(
     youngs_modulus: float,
     yield_stress: float,
@@ -50,6 +55,8 @@ def power_law(
     fit: str = "both",
 ) -> PowerLaw:
     """Returns the power law with the least squared difference to Ludwik's stress over the total strain.
+
+    Source: Shahin (2021), eqs. 2.2, 2.3 and 3.3.
 
     Args:
         youngs_modulus: E [Pa], above 0; inf for a rigid-plastic material.
@@ -63,3 +70,7 @@ def power_law(
         ValueError: for a material outside of these ranges, or if the best exponent is not in [0, 1].
     """
     return PowerLaw(*_core.laws.ludwik_power_law(youngs_modulus, yield_stress, strength, exponent, largest_strain, fit))
+
+
+def __dir__() -> list[str]:
+    return __all__

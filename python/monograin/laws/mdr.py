@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from .._inputs import explained, same
 
 __all__ = [
     "PeelCurve",
@@ -32,8 +33,11 @@ __all__ = [
 ]
 
 
+@explained
 def elastic_force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Any:
-    """Returns the force of an elastic contact without adhesion [N] (eqs. 23 to 25, 29 to 31).
+    """Returns the force of an elastic contact without adhesion [N].
+
+    Source: Zunker and Kamrin (2024), Part I, eqs. 23 and 25 (parabola), 30 and 31 (ellipse).
 
     Args:
         modulus: composite modulus E* = E/(1 - nu^2) [Pa], above 0.
@@ -44,8 +48,11 @@ def elastic_force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, 
     return _core.laws.mdr_elastic("force", profile, modulus, radius, overlap)
 
 
+@explained
 def elastic_contact_radius(radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Any:
     """Returns the contact radius of an elastic contact without adhesion [m].
+
+    Source: Zunker and Kamrin (2024), Part I, eqs. 23 and 29.
 
     Args:
         radius, overlap, profile: as in :func:`elastic_force`.
@@ -53,8 +60,11 @@ def elastic_contact_radius(radius: ArrayLike, overlap: ArrayLike, *, profile: st
     return _core.laws.mdr_elastic("contact_radius", profile, 1.0, radius, overlap)
 
 
+@explained
 def elastic_energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Any:
     """Returns the energy that an elastic contact without adhesion stores [J].
+
+    Source: Zunker and Kamrin (2024), Part I, the integral of eqs. 25 and 31.
 
     Args:
         modulus, radius, overlap, profile: as in :func:`elastic_force`.
@@ -62,10 +72,13 @@ def elastic_energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *,
     return _core.laws.mdr_elastic("energy", profile, modulus, radius, overlap)
 
 
+@explained
 def yield_overlap(
     youngs_modulus: ArrayLike, poisson_ratio: ArrayLike, yield_stress: ArrayLike, radius: ArrayLike
 ) -> Any:
-    """Returns the overlap at which an elastic contact becomes fully plastic [m] (eq. 41); inf if it never does.
+    """Returns the overlap at which an elastic contact becomes fully plastic [m]; inf if it never does.
+
+    Source: Zunker and Kamrin (2024), Part I, eqs. 40 and 41.
 
     Args:
         youngs_modulus: E [Pa], above 0.
@@ -76,8 +89,11 @@ def yield_overlap(
     return _core.laws.mdr_yield_overlap(youngs_modulus, poisson_ratio, yield_stress, radius)
 
 
+@explained
 def plastic_mean_pressure(yield_stress: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
-    """Returns the mean pressure of a fully plastic contact, Y (1 + 1.75 exp(-4.4 delta/R)) [Pa] (eq. 28).
+    """Returns the mean pressure of a fully plastic contact, Y (1 + 1.75 exp(-4.4 delta/R)) [Pa].
+
+    Source: Zunker and Kamrin (2024), Part I, eqs. 16, 21 and 28.
 
     Args:
         yield_stress: Y [Pa], above 0.
@@ -88,6 +104,7 @@ def plastic_mean_pressure(yield_stress: ArrayLike, radius: ArrayLike, overlap: A
     return _core.laws.mdr_plastic("mean_pressure", yield_stress, 0.3, yield_stress, radius, overlap)
 
 
+@explained
 def plastic_force(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -95,9 +112,11 @@ def plastic_force(
     radius: ArrayLike,
     overlap: ArrayLike,
 ) -> Any:
-    """Returns the force of a fully plastic contact at its largest overlap [N] (eqs. 16, 21, 28, 36).
+    """Returns the force of a fully plastic contact at its largest overlap [N].
 
     The apparent radius is taken as constant since first yield. Below :func:`yield_overlap` the result is nan.
+
+    Source: Zunker and Kamrin (2024), Part I, eqs. 16, 21, 28 and 36.
 
     Args:
         youngs_modulus: E [Pa], above 0.
@@ -109,6 +128,7 @@ def plastic_force(
     return _core.laws.mdr_plastic("force", youngs_modulus, poisson_ratio, yield_stress, radius, overlap)
 
 
+@explained
 def plastic_contact_radius(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -118,12 +138,15 @@ def plastic_contact_radius(
 ) -> Any:
     """Returns the contact radius of a fully plastic contact at its largest overlap [m].
 
+    Source: Zunker and Kamrin (2024), Part I, eqs. 36, 42 and 43.
+
     Args:
         youngs_modulus, poisson_ratio, yield_stress, radius, overlap: as in :func:`plastic_force`.
     """
     return _core.laws.mdr_plastic("contact_radius", youngs_modulus, poisson_ratio, yield_stress, radius, overlap)
 
 
+@explained
 def pull_off_force(
     modulus: ArrayLike,
     radius: ArrayLike,
@@ -132,7 +155,9 @@ def pull_off_force(
     control: str = "force",
     profile: str = "ellipse",
 ) -> Any:
-    """Returns the pull-off force of an elastic adhesive contact [N], which is negative (eqs. 11, 15).
+    """Returns the pull-off force of an elastic adhesive contact [N], which is negative.
+
+    Source: Zunker and Kamrin (2024), Part I, eqs. 11, 14 and 15.
 
     Args:
         modulus: composite modulus E* [Pa], above 0.
@@ -145,6 +170,7 @@ def pull_off_force(
     return _core.laws.mdr_pull_off("force", profile, control, modulus, radius, surface_energy)
 
 
+@explained
 def pull_off_radius(
     modulus: ArrayLike,
     radius: ArrayLike,
@@ -153,7 +179,9 @@ def pull_off_radius(
     control: str = "force",
     profile: str = "ellipse",
 ) -> Any:
-    """Returns the contact radius of an elastic adhesive contact at pull-off [m] (eq. 15).
+    """Returns the contact radius of an elastic adhesive contact at pull-off [m].
+
+    Source: Zunker and Kamrin (2024), Part I, eq. 15.
 
     Args:
         modulus, radius, surface_energy, control, profile: as in :func:`pull_off_force`.
@@ -171,7 +199,14 @@ class PeelCurve(NamedTuple):
     force: NDArray[np.float64]
     """Force [N], negative in tension."""
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, PeelCurve) and same(tuple(self), tuple(other))
 
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+
+@explained
 def peel_curve(
     radii: ArrayLike,
     heights: ArrayLike,
@@ -181,11 +216,13 @@ def peel_curve(
     control: str = "displacement",
     points: int = 101,
 ) -> PeelCurve:
-    """Returns how an adhesive contact with a measured or computed relaxed profile is pulled off (appendix F.2).
+    """Returns how an adhesive contact with a measured or computed relaxed profile is pulled off.
 
     The profile is the surface without load, for example of a flattened particle from finite elements or a profilometer;
     it need not be convex. The compression before must have closed the whole disc up to the last radius. Images, forces and
     the end of stability follow from eqs. 4, 11, 14 and 15; between samples the profile is a cubic in the square of the radius.
+
+    Source: Zunker and Kamrin (2024), Part I, eqs. 4, 11, 14 and 15, and appendix F.2.
 
     Args:
         radii: distances from the axis [m], shape (n,), from 0 on, ascending, at least five. The last one is the largest
@@ -203,8 +240,11 @@ def peel_curve(
     return PeelCurve(*_core.laws.mdr_peel_curve(radii, heights, modulus, surface_energy, control, points))
 
 
+@explained
 def power_ratio(exponent: ArrayLike) -> Any:
     """Returns kappa_n = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2): the one-dimensional image of r^n is kappa_n x^n.
+
+    Source: Zunker and Kamrin (2024), Part I, eq. 4 for a power.
 
     Args:
         exponent: n, 0 or above; not necessarily an integer.
@@ -212,8 +252,11 @@ def power_ratio(exponent: ArrayLike) -> Any:
     return _core.laws.mdr_power_ratio(exponent)
 
 
+@explained
 def power_profile_1d(coefficient: ArrayLike, exponent: ArrayLike, x: ArrayLike) -> Any:
-    """Returns the one-dimensional image C kappa_n x^n of the profile C r^n (eq. 4), in the unit of the profile.
+    """Returns the one-dimensional image C kappa_n x^n of the profile C r^n, in the unit of the profile.
+
+    Source: Zunker and Kamrin (2024), Part I, eq. 4.
 
     Args:
         coefficient: C.
@@ -223,8 +266,11 @@ def power_profile_1d(coefficient: ArrayLike, exponent: ArrayLike, x: ArrayLike) 
     return _core.laws.mdr_power_profile_1d(coefficient, exponent, x)
 
 
+@explained
 def power_profile_3d(coefficient: ArrayLike, exponent: ArrayLike, r: ArrayLike) -> Any:
-    """Returns the profile (C/kappa_n) r^n whose one-dimensional image is C x^n (eq. 5).
+    """Returns the profile (C/kappa_n) r^n whose one-dimensional image is C x^n.
+
+    Source: Zunker and Kamrin (2024), Part I, eq. 5.
 
     Args:
         coefficient: C.
@@ -232,3 +278,7 @@ def power_profile_3d(coefficient: ArrayLike, exponent: ArrayLike, r: ArrayLike) 
         r: distance from the axis, 0 or above.
     """
     return _core.laws.mdr_power_profile_3d(coefficient, exponent, r)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -14,10 +14,12 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._inputs import explained
 
 __all__ = ["coordination_number", "modulus", "plastic_fraction", "stress"]
 
 
+@explained
 def stress(
     packing_fraction: ArrayLike,
     youngs_modulus: ArrayLike,
@@ -26,7 +28,9 @@ def stress(
     yield_stress: ArrayLike = math.inf,
     hardening_modulus: ArrayLike = 0.0,
 ) -> Any:
-    """Returns the compressive stress of the packing [Pa] (eqs. 6 and 10).
+    """Returns the compressive stress of the packing [Pa].
+
+    Source: Nezamabadi et al. (2022), eqs. 6 and 10.
 
     Args:
         packing_fraction: Phi, up to 1.
@@ -40,8 +44,11 @@ def stress(
     )
 
 
+@explained
 def modulus(packing_fraction: ArrayLike, youngs_modulus: ArrayLike, poisson_ratio: ArrayLike) -> Any:
-    """Returns the modulus M_eff of the packing [Pa] (eq. 7).
+    """Returns the modulus M_eff of the packing [Pa].
+
+    Source: Nezamabadi et al. (2022), eqs. 7 to 9.
 
     Args:
         packing_fraction, youngs_modulus, poisson_ratio: as in :func:`stress`.
@@ -49,6 +56,7 @@ def modulus(packing_fraction: ArrayLike, youngs_modulus: ArrayLike, poisson_rati
     return _core.laws.packing("modulus", packing_fraction, youngs_modulus, poisson_ratio, math.inf, 0.0)
 
 
+@explained
 def plastic_fraction(
     packing_fraction: ArrayLike,
     youngs_modulus: ArrayLike,
@@ -56,7 +64,9 @@ def plastic_fraction(
     yield_stress: ArrayLike,
     hardening_modulus: ArrayLike = 0.0,
 ) -> Any:
-    """Returns the share f_p of discs that have yielded (eq. 11).
+    """Returns the share f_p of discs that have yielded.
+
+    Source: Nezamabadi et al. (2022), eq. 11.
 
     Args:
         packing_fraction, youngs_modulus, poisson_ratio, yield_stress, hardening_modulus: as in :func:`stress`.
@@ -66,11 +76,18 @@ def plastic_fraction(
     )
 
 
+@explained
 def coordination_number(packing_fraction: ArrayLike) -> Any:
-    """Returns the mean number Z of contacts of a disc (eq. 17).
+    """Returns the mean number Z of contacts of a disc.
+
+    Source: Nezamabadi et al. (2022), eq. 17.
 
     Args:
         packing_fraction: Phi, up to 1.
     """
     # The number does not depend on the discs' material.
     return _core.laws.packing("coordination_number", packing_fraction, 1.0, 0.3, math.inf, 0.0)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -13,10 +13,12 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._inputs import explained
 
 __all__ = ["contact_radius", "force", "mean_pressure", "work"]
 
 
+@explained
 def force(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -27,6 +29,8 @@ def force(
     configuration: str = "simple",
 ) -> Any:
     """Returns the force of one moving wall [N].
+
+    Source: Shahin (2021), eq. 2.12, with the contact radius of eq. 2.13 and the pressures of eqs. 2.15 to 2.47.
 
     Args:
         youngs_modulus: E [Pa], above 0.
@@ -43,6 +47,7 @@ def force(
     return _core.laws.semimech("force", configuration, youngs_modulus, poisson_ratio, yield_stress, radius, displacement)
 
 
+@explained
 def contact_radius(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -52,7 +57,9 @@ def contact_radius(
     *,
     configuration: str = "simple",
 ) -> Any:
-    """Returns the contact radius at a moving wall [m] (eqs. 2.13, 2.14).
+    """Returns the contact radius at a moving wall [m].
+
+    Source: Shahin (2021), eqs. 2.13 and 2.14, the exponent of the latter corrected.
 
     Args:
         youngs_modulus, poisson_ratio, yield_stress, radius, displacement, configuration: as in :func:`force`.
@@ -62,6 +69,7 @@ def contact_radius(
     )
 
 
+@explained
 def mean_pressure(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -73,6 +81,8 @@ def mean_pressure(
 ) -> Any:
     """Returns the mean pressure under a moving wall [Pa].
 
+    Source: Shahin (2021), eqs. 2.15 to 2.47, eq. 2.24 corrected.
+
     Args:
         youngs_modulus, poisson_ratio, yield_stress, radius, displacement, configuration: as in :func:`force`.
     """
@@ -81,6 +91,7 @@ def mean_pressure(
     )
 
 
+@explained
 def work(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -92,7 +103,13 @@ def work(
 ) -> Any:
     """Returns the work of one moving wall since first touch [J].
 
+    Source: Shahin (2021), the integral of eq. 2.12.
+
     Args:
         youngs_modulus, poisson_ratio, yield_stress, radius, displacement, configuration: as in :func:`force`.
     """
     return _core.laws.semimech("work", configuration, youngs_modulus, poisson_ratio, yield_stress, radius, displacement)
+
+
+def __dir__() -> list[str]:
+    return __all__

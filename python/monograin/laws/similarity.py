@@ -12,6 +12,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from .. import _core
+from .._inputs import explained
 
 __all__ = [
     "contact_radius",
@@ -26,10 +27,13 @@ __all__ = [
 ]
 
 
+@explained
 def force(
     strength: ArrayLike, exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, rule: str = "parabolic"
 ) -> Any:
-    """Returns the force of a sphere at a rigid flat wall [N], as one half of a pair of equal spheres (eqs. 2.4, 2.8).
+    """Returns the force of a sphere at a rigid flat wall [N], as one half of a pair of equal spheres.
+
+    Source: Shahin (2021), eqs. 2.4 and 2.8.
 
     Args:
         strength: kappa [Pa], above 0.
@@ -42,10 +46,13 @@ def force(
     return _core.laws.similarity("force", rule, strength, exponent, radius, displacement)
 
 
+@explained
 def contact_radius(
     exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, rule: str = "parabolic"
 ) -> Any:
     """Returns the contact radius of a sphere at a rigid flat wall [m].
+
+    Source: Shahin (2021), eq. 2.5, or eq. B.24.
 
     Args:
         exponent, radius, displacement, rule: as in :func:`force`.
@@ -53,10 +60,13 @@ def contact_radius(
     return _core.laws.similarity("contact_radius", rule, 1.0, exponent, radius, displacement)
 
 
+@explained
 def mean_pressure(
     strength: ArrayLike, exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, rule: str = "parabolic"
 ) -> Any:
     """Returns the mean pressure k kappa (a/R)^mu of a sphere at a rigid flat wall [Pa].
+
+    Source: Shahin (2021), eqs. 2.4 and 2.8.
 
     Args:
         strength, exponent, radius, displacement, rule: as in :func:`force`.
@@ -64,10 +74,13 @@ def mean_pressure(
     return _core.laws.similarity("mean_pressure", rule, strength, exponent, radius, displacement)
 
 
+@explained
 def work(
     strength: ArrayLike, exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, rule: str = "parabolic"
 ) -> Any:
     """Returns the work of the wall since first touch [J].
+
+    Source: Shahin (2021), the integral of eq. 2.4.
 
     Args:
         strength, exponent, radius, displacement, rule: as in :func:`force`.
@@ -75,8 +88,11 @@ def work(
     return _core.laws.similarity("work", rule, strength, exponent, radius, displacement)
 
 
+@explained
 def pair_strength(first: ArrayLike, second: ArrayLike, exponent: ArrayLike) -> Any:
-    """Returns the strength of two materials in contact, (kappa_1^(-m) + kappa_2^(-m))^(-1/m) [Pa] (eq. 2.6).
+    """Returns the strength of two materials in contact, (kappa_1^(-m) + kappa_2^(-m))^(-1/m) [Pa].
+
+    Source: Shahin (2021), eq. 2.8.
 
     Args:
         first, second: strengths kappa_1 and kappa_2 [Pa], above 0; one may be inf, for a rigid body.
@@ -85,6 +101,7 @@ def pair_strength(first: ArrayLike, second: ArrayLike, exponent: ArrayLike) -> A
     return _core.laws.similarity_strength(first, second, exponent)
 
 
+@explained
 def pair_force(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -94,7 +111,9 @@ def pair_force(
     *,
     rule: str = "parabolic",
 ) -> Any:
-    """Returns the force of two spheres in contact [N] (eqs. 2.4, 2.8).
+    """Returns the force of two spheres in contact [N].
+
+    Source: Shahin (2021), eqs. 2.4, 2.7 and 2.8.
 
     Args:
         strength: strength of the pair [Pa], see :func:`pair_strength`.
@@ -106,6 +125,7 @@ def pair_force(
     return _core.laws.similarity_pair("force", rule, strength, exponent, first_radius, second_radius, approach)
 
 
+@explained
 def pair_contact_radius(
     exponent: ArrayLike,
     first_radius: ArrayLike,
@@ -116,12 +136,15 @@ def pair_contact_radius(
 ) -> Any:
     """Returns the contact radius of two spheres in contact [m].
 
+    Source: Shahin (2021), eqs. 2.5 and 2.7, or eq. B.24.
+
     Args:
         exponent, first_radius, second_radius, approach, rule: as in :func:`pair_force`.
     """
     return _core.laws.similarity_pair("contact_radius", rule, 1.0, exponent, first_radius, second_radius, approach)
 
 
+@explained
 def pair_approach(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -133,6 +156,8 @@ def pair_approach(
 ) -> Any:
     """Returns the approach of the centres under a force [m], the inverse of :func:`pair_force`.
 
+    Source: Shahin (2021), eq. 2.4, solved for the approach.
+
     Args:
         strength, exponent, first_radius, second_radius, rule: as in :func:`pair_force`.
         force: force between the spheres [N], 0 or above.
@@ -140,6 +165,7 @@ def pair_approach(
     return _core.laws.similarity_pair("approach", rule, strength, exponent, first_radius, second_radius, force)
 
 
+@explained
 def pair_work(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -151,7 +177,13 @@ def pair_work(
 ) -> Any:
     """Returns the work of two spheres in contact since first touch [J].
 
+    Source: Shahin (2021), the integral of eq. 2.4.
+
     Args:
         strength, exponent, first_radius, second_radius, approach, rule: as in :func:`pair_force`.
     """
     return _core.laws.similarity_pair("work", rule, strength, exponent, first_radius, second_radius, approach)
+
+
+def __dir__() -> list[str]:
+    return __all__
