@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, Union
 
 from . import _core
+from ._inputs import Named, explained, unknown
 from .runs import Scenario
 
 
@@ -40,7 +41,7 @@ class Key:
     is_required: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Model:
     """A contact law, or a law of a body without walls.
 
@@ -77,17 +78,21 @@ class Model:
     events: dict[str, str]
     validity: list[str]
 
+    def __repr__(self) -> str:
+        return f"<Model {self.name!r}: {self.summary}>"
+
 
 def models() -> dict[str, Model]:
     """Returns all models by name, in the order of ``monograin models``."""
-    return {entry["name"]: _model(entry) for entry in _core.models()}
+    return Named({entry["name"]: _model(entry) for entry in _core.models()})
 
 
 def _model(entry: dict[str, Any]) -> Model:
     fields = dict(entry)
     for table in ("material", "options", "steps"):
-        fields[table] = {key["name"]: Key(**key) for key in entry[table]}
-    fields["presets"] = dict(entry["presets"])
+        fields[table] = Named({key["name"]: Key(**key) for key in entry[table]})
+    for table in ("presets", "regimes", "events"):
+        fields[table] = Named(entry[table])
     return Model(**fields)
 
 
@@ -105,12 +110,14 @@ class Parameter(NamedTuple):
     symbol: str
 
 
+@explained
 def parameters(scenario: Scenario) -> dict[str, Parameter]:
     """Returns the constants of particle and material of a scenario, and those that follow from them, by name.
 
     ``monograin models --parameters FILE`` prints the same constants.
     """
-    return {name: Parameter(value, unit, symbol) for name, value, unit, symbol in scenario._core.parameters()}
+    found = scenario._core.parameters()
+    return Named({name: Parameter(value, unit, symbol) for name, value, unit, symbol in found})
 
 
 def schema() -> dict[str, Any]:
@@ -136,8 +143,8 @@ def scenario(name: str = "die") -> Scenario:
         name: one of :func:`scenarios`.
 
     Raises:
-        KeyError: for an unknown name; the message lists the known ones.
+        KeyError: for an unknown name; the message suggests the nearest ones.
     """
     if name not in scenarios():
-        raise KeyError(f"there is no ready scenario '{name}'; there are {', '.join(scenarios())}")
+        raise KeyError(unknown(name, scenarios()))
     return Scenario.load(scenario_folder() / f"{name}.toml")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._inputs import explained, numbers
 from .errors import Interrupted
 from .runs import Run, Scenario, checked
 
@@ -20,14 +21,17 @@ class Prepared:
     its text.
     """
 
+    __slots__ = ("_scenario", "_core")
+
+    @explained
     def __init__(self, scenario: Scenario, keys: Iterable[str]) -> None:
         if isinstance(keys, str):
             raise TypeError(f"keys: expected a list of keys, such as [{keys!r}], not one str")
         names = list(keys)
         if not all(isinstance(name, str) for name in names):
             raise TypeError(f"keys: expected a list of str, not {names!r}")
-        self._scenario = scenario
         self._core = _core.Prepared(scenario._core, names)
+        self._scenario = scenario
 
     @property
     def scenario(self) -> Scenario:
@@ -50,13 +54,14 @@ class Prepared:
             ScenarioError: if a value is not admissible.
             SolverError: as in :meth:`monograin.Scenario.run`.
             ValueError: if the number of values is not that of the keys.
+            TypeError: for values that are no real numbers.
             KeyboardInterrupt: on Ctrl-C, in the main thread of Python.
         """
-        numbers = self._in_order(values, getattr(values, "index", None)).copy()
-        if numbers.ndim != 1:
-            raise ValueError(f"values of shape {numbers.shape}; expected ({len(self.keys)},)")
-        core = self._core.run(numbers)
-        return checked(Run(core, lambda: self._scenario.replace(dict(zip(self.keys, numbers.tolist())))), check)
+        row = self._in_order("values", values, getattr(values, "index", None))
+        if row.ndim != 1:
+            raise ValueError(f"values of shape {row.shape}; expected ({len(self.keys)},)")
+        core = self._core.run(row)
+        return checked(Run(core, lambda: self._scenario.replace(dict(zip(self.keys, row.tolist())))), check)
 
     @overload
     def map(
@@ -68,6 +73,12 @@ class Prepared:
         self, samples: Union[ArrayLike, Mapping[str, ArrayLike]], columns: Sequence[str], *, threads: int = ..., statuses: Literal[True]
     ) -> tuple[NDArray[np.float64], NDArray[np.str_]]: ...
 
+    @overload
+    def map(
+        self, samples: Union[ArrayLike, Mapping[str, ArrayLike]], columns: Sequence[str], *, threads: int = ..., statuses: bool
+    ) -> Union[NDArray[np.float64], tuple[NDArray[np.float64], NDArray[np.str_]]]: ...
+
+    @explained
     def map(
         self, samples: Union[ArrayLike, Mapping[str, ArrayLike]], columns: Sequence[str], *, threads: int = 0, statuses: bool = False
     ) -> Union[NDArray[np.float64], tuple[NDArray[np.float64], NDArray[np.str_]]]:
@@ -78,9 +89,11 @@ class Prepared:
 
         Args:
             samples: array of shape (n, keys) in SI units; for a single key also (n,). A DataFrame, or a mapping
-                from keys to arrays, with a column for each key: its columns are found by their names.
-            columns: formulas over the columns of the history with one value each, such as ``"max(axial.force)"`` or
-                ``"end(apparent_radius) / 0.01"``. A formula has numbers, names of columns, ``+ - * / ^``, brackets,
+                from keys to arrays, with a column for each key: its columns are found by their names. Rows with a nan,
+                or a masked or missing value, are refused.
+            columns: formulas over the columns of numbers of the history with one value each, such as
+                ``"max(axial.force)"`` or ``"end(apparent_radius) / 0.01"``. A formula has numbers, names of columns
+                (``axial.force``) or their headings (``axial.force[N]``), ``+ - * / ^``, brackets,
                 ``sqrt`` and other functions, ``min``, ``max``, ``last`` (last defined value) and ``end`` (value in the
                 last row, even if undefined).
             threads: number of threads; 0: one for each core.
@@ -93,17 +106,18 @@ class Prepared:
             n words: ``"complete"``, ``"stopped"``, ``"failed"`` or ``"refused"``.
 
         Raises:
-            ValueError: for a formula that cannot be read, names a column that the scenario does not have or has more
-                than one value, and for samples of another shape or without a key.
+            ValueError: for a formula that cannot be read, names a column of words or one that the scenario does not
+                have, or has more than one value, and for samples of another shape or without a key.
+            TypeError: for samples that are no real numbers.
             Interrupted: on Ctrl-C, with the rows that are complete. It is a ``KeyboardInterrupt``.
         """
         if threads < 0:
             raise ValueError(f"threads = {threads}: expected 0 for one for each core, or more")
         if isinstance(columns, str) or not all(isinstance(column, str) for column in columns):
             raise ValueError(f"columns: expected a list of formulas, not {columns!r}")
-        values = self._in_order(samples, getattr(samples, "columns", None))
-        if values.ndim == 1 and len(self.keys) == 1:
-            values = values[:, np.newaxis]
+        values = self._in_order("samples", samples, getattr(samples, "columns", None))
+        if values.ndim == 1 and (len(self.keys) == 1 or values.size == 0):
+            values = values.reshape(-1, len(self.keys))
         if values.ndim != 2 or values.shape[1] != len(self.keys):
             raise ValueError(f"samples of shape {values.shape} for {len(self.keys)} keys; expected (n, {len(self.keys)})")
         results, words, raised = self._core.map(values, list(columns), operator.index(threads))
@@ -115,16 +129,16 @@ class Prepared:
             raise raised
         return (table, ends) if statuses else table
 
-    def _in_order(self, values: Any, names: Any) -> NDArray[np.float64]:
+    def _in_order(self, argument: str, values: Any, names: Any) -> NDArray[np.float64]:
         """Returns values as an array, in the order of the keys if the values or the given names of them are texts."""
         if isinstance(values, Mapping):
             names = values
         if names is None or callable(names) or not all(isinstance(name, str) for name in names):
-            return np.ascontiguousarray(values, dtype=float)
+            return numbers(values, argument)
         given = list(names)
         if len(given) != len(self.keys) or set(given) != set(self.keys):
             raise ValueError(f"values for {', '.join(map(repr, given))}; expected the keys {', '.join(map(repr, self.keys))}")
-        return np.stack([np.asarray(values[key], dtype=float) for key in self.keys], axis=-1)
+        return np.stack([numbers(values[key], f"{argument}: {key!r}") for key in self.keys], axis=-1)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (Prepared, (self._scenario, self.keys))

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import errno
 import os
-from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Union
+from typing import Any, Iterator, Mapping, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
-
-if TYPE_CHECKING:
-    import pandas
+from . import _core, _html
+from ._inputs import Named, explained, numbers, same, unknown
+from ._optional import DataFrame
 
 
 class Table:
@@ -24,13 +23,18 @@ class Table:
 
     A column of numbers is a read-only view of the table's memory: nothing is copied, and the view stays valid after the
     table is deleted. Undefined values are nan. A column of words is a read-only array of str.
+
+    Tables are equal if columns, units, header lines and all values are.
     """
+
+    __slots__ = ("_core", "_words")
 
     def __init__(self, core: _core.Table) -> None:
         self._core = core
         self._words: dict[str, NDArray[np.str_]] = {}
 
     @classmethod
+    @explained
     def read_csv(cls, file: Union[str, os.PathLike[str]]) -> Table:
         """Reads a CSV file, such as the ``history.csv`` of a run. An empty cell among numbers is nan.
 
@@ -47,30 +51,35 @@ class Table:
 
     @classmethod
     def from_columns(
-        cls, columns: Union[Mapping[str, Any], pandas.DataFrame], units: Optional[Mapping[str, str]] = None
+        cls, columns: Union[Mapping[str, Any], DataFrame], units: Optional[Mapping[str, str]] = None
     ) -> Table:
         """Makes a table of arrays, such as measured curves.
 
         Args:
             columns: arrays of shape (rows,) by name, as a dict or a ``pandas.DataFrame``. A name may have its unit behind
-                it (``"force[N]"``). Arrays without a number become columns of words.
+                it (``"force[N]"``). Arrays of texts without a number become columns of words. Elements that are masked
+                or missing are nan.
             units: units by the name of a column; if None, those that :meth:`to_pandas` gives a DataFrame.
 
         Raises:
-            ValueError: for no arrays, or arrays of different lengths.
+            ValueError: for no arrays, arrays of different lengths, two columns of one name and unit, a unit of a column
+                that there is not, or a column that holds numbers and words.
+            TypeError: for columns that are no mapping, or an array of neither numbers nor texts.
         """
-        known: Mapping[str, str] = getattr(columns, "attrs", {}).get("units", {}) if units is None else units
+        if not hasattr(columns, "keys"):
+            raise TypeError(f"columns: expected arrays by name, in a dict or a DataFrame, not {type(columns).__name__}")
+        known = dict(getattr(columns, "attrs", {}).get("units", {}) if units is None else units)
         parts: list[_core.ColumnParts] = []
-        for heading in columns:
+        for heading in columns.keys():
             name, bracket, unit = str(heading).removesuffix("]").partition("[")
             if not bracket or not str(heading).endswith("]"):
                 name, unit = str(heading), known.get(heading, "")
-            values = np.asarray(columns[heading])
-            labels: list[str] = []
-            if values.dtype.kind in "OUS" and not any(map(_is_number, values.ravel().tolist())):
-                words, values = np.unique(values.astype(str), return_inverse=True)
-                labels = words.tolist()
-            parts.append((name, unit, labels, values.astype(float)))
+            if any(part[:2] == (name, unit) for part in parts):
+                raise ValueError(f"there are two columns {name!r} of one unit; expected one")
+            parts.append((name, unit, *_column(columns[heading], str(heading))))
+        for name in () if units is None else units:
+            if name not in columns.keys():
+                raise ValueError(f"units: {unknown(name, map(str, columns.keys()))}")
         shapes = [values.shape for *_, values in parts]
         if not parts or any(shape != shapes[0] or len(shape) != 1 for shape in shapes):
             raise ValueError(f"columns of shapes {shapes}; expected columns of equal length")
@@ -87,12 +96,12 @@ class Table:
 
         Units of the program's own tables are SI.
         """
-        return self._core.units
+        return Named(self._core.units)
 
     @property
     def header(self) -> dict[str, str]:
         """Header lines ``key: value`` of the table, such as program, scenario, model and material."""
-        return dict(self._core.header)
+        return Named(self._core.header)
 
     def __len__(self) -> int:
         return self._core.row_count
@@ -100,6 +109,7 @@ class Table:
     def __contains__(self, column: object) -> bool:
         return isinstance(column, str) and self._core.contains(column)
 
+    @explained
     def __getitem__(self, column: str) -> NDArray[Any]:
         """Returns a column, by its name (``"axial.force"``) or heading (``"axial.force[N]"``).
 
@@ -108,8 +118,11 @@ class Table:
 
         Raises:
             KeyError: for an unknown name; the message suggests the nearest column.
+            TypeError: for anything but a str, such as the number of a row.
         """
         if column not in self._words:
+            if isinstance(column, str) and column not in self:
+                raise KeyError(unknown(column, self.columns))
             values = self._core.values(column)
             labels = self._core.labels(column)
             if not labels:
@@ -130,10 +143,27 @@ class Table:
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         names = self.columns
-        values = [self[name].tolist() for name in names]
-        return (dict(zip(names, row)) for row in zip(*values))
+        # Pieces of the columns become lists, so that the first rows of a long table come at once.
+        for begin in range(0, len(self), 1024):
+            values = [self._cells(name, slice(begin, begin + 1024)).tolist() for name in names]
+            yield from (dict(zip(names, row)) for row in zip(*values))
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def _cells(self, name: str, rows: slice = slice(None)) -> NDArray[Any]:
+        """Returns a copy of some rows of a column. Rows share the texts of their words."""
+        labels, values = self._core.labels(name), self._core.values(name)[rows]
+        return np.asarray(labels, dtype=object)[values.astype(np.intp)] if labels else values.copy()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Table):
+            return NotImplemented
+        if (self._core.header, self.columns, self.units) != (other._core.header, other.columns, other.units):
+            return False
+        return all(same(self[name], other[name]) for name in self.columns)
+
+    def __hash__(self) -> int:
+        return hash((len(self), *self.columns))
+
+    def to_pandas(self) -> DataFrame:
         """Returns a copy as a ``pandas.DataFrame`` with the same columns; its ``attrs["units"]`` are :attr:`units`.
 
         Raises:
@@ -141,9 +171,14 @@ class Table:
         """
         import pandas
 
-        frame = pandas.DataFrame({name: self[name].copy() for name in self.columns})
-        frame.attrs["units"] = self.units
+        frame = pandas.DataFrame({name: self._cells(name) for name in self.columns})
+        frame.attrs["units"] = dict(self.units)
         return frame
+
+    def _repr_html_(self) -> str:
+        count = f"{len(self)} row{'' if len(self) == 1 else 's'}"
+        headings = {f"{name} [{unit}]" if unit and not name.endswith("]") else name: self[name] for name, unit in self.units.items()}
+        return _html.excerpt(f"Table of {count}", headings)
 
     def __repr__(self) -> str:
         return f"<Table of {len(self)} rows: {', '.join(self.columns)}>"
@@ -151,6 +186,21 @@ class Table:
 
 def _of_columns(header: list[tuple[str, str]], columns: list[_core.ColumnParts]) -> Table:
     return Table(_core.table_of(header, columns))
+
+
+def _column(values: Any, name: str) -> tuple[list[str], NDArray[np.float64]]:
+    """Returns the labels of a column, empty for numbers, and its values."""
+    array = np.asarray(values)
+    cells = array.ravel().tolist() if array.dtype.kind in "OUS" else []
+    texts = [cell for cell in cells if isinstance(cell, (str, bytes))]
+    if texts and not any(map(_is_number, cells)):
+        words = [cell if isinstance(cell, str) else cell.decode() if isinstance(cell, bytes) else "" for cell in cells]
+        labels, codes = np.unique(words, return_inverse=True)
+        return labels.tolist(), codes.reshape(array.shape).astype(float)
+    for text in texts:
+        if not _is_number(text):
+            raise ValueError(f"column {name!r} holds numbers and {text!r}; expected numbers or words")
+    return [], array.astype(float) if texts else numbers(values, f"column {name!r}")
 
 
 def _is_number(value: Any) -> bool:

@@ -87,6 +87,31 @@ def test_a_formula_that_is_none_is_an_error(prepared, samples):
         prepared.map(samples, ["axial.force"])
     with pytest.raises(ValueError, match="list of formulas"):
         prepared.map(samples, "max(axial.force)")
+    with pytest.raises(ValueError, match="'axial.regime' holds words"):
+        prepared.map(samples, ["end(axial.regime)"])
+
+
+def test_a_formula_takes_the_heading_of_a_column(prepared, samples):
+    force, same = prepared.map(samples[:2], ["max(axial.force)", "max(axial.force[N])"]).T
+    assert_array_equal(force, same)
+
+
+def test_samples_that_are_masked_are_refused_and_others_than_numbers_are_errors():
+    single = mg.scenario("die").prepare(["material.yield_stress"])
+    table, statuses = single.map(np.ma.array([4e7, 5e7], mask=[0, 1]), COLUMNS[:1], statuses=True)
+    assert statuses.tolist() == ["complete", "refused"]
+    assert np.isnan(table[1, 0])
+    for wrong in ("40 MPa", ["40 MPa"], [1j], np.array(["2020"], dtype="M8"), None):
+        with pytest.raises(TypeError, match="^samples: expected real numbers"):
+            single.map(wrong, COLUMNS[:1])
+    with pytest.raises(TypeError, match="threads: expected int, not None"):
+        single.map([4e7], COLUMNS[:1], threads=None)
+
+
+def test_no_samples_give_no_rows_and_no_keys_are_refused(prepared):
+    assert prepared.map([], COLUMNS).shape == (0, len(COLUMNS))
+    with pytest.raises(ValueError, match="keys: expected at least one"):
+        mg.scenario("die").prepare([])
 
 
 def test_a_prepared_run_knows_its_scenario(prepared, samples):

@@ -481,3 +481,41 @@ def test_a_table_goes_to_pandas_and_back(die):
 def test_a_table_of_unequal_arrays_is_refused(columns):
     with pytest.raises(ValueError, match="expected columns of equal length"):
         mg.Table.from_columns(columns)
+
+
+def test_rows_of_a_long_table_come_one_after_the_other():
+    table = mg.Table.from_columns({"x": np.arange(3000.0), "word": ["a", "b", "c"] * 1000})
+    rows = list(table)
+    assert [row["x"] for row in rows] == list(range(3000))
+    assert rows[2999]["word"] == "c"
+    assert next(iter(table)) == {"x": 0.0, "word": "a"}
+
+
+def test_masked_and_missing_elements_of_a_table_are_nan():
+    pandas = pytest.importorskip("pandas")
+    table = mg.Table.from_columns(
+        {
+            "masked": np.ma.array([1, 2], mask=[False, True]),
+            "none": [1.0, None],
+            "pandas": pandas.array([1, None], dtype="Int64"),
+            "word": ["x", None],
+        }
+    )
+    for name in ("masked", "none", "pandas"):
+        assert_array_equal(table[name], [1.0, np.nan], err_msg=name)
+    assert table["word"].tolist() == ["x", ""]
+
+
+@pytest.mark.parametrize(
+    "columns, units, error, sentence",
+    [
+        ({"a[N]": [1.0], "a": [2.0]}, {"a": "N"}, ValueError, "two columns 'a' of one unit"),
+        ({"force": [1.0]}, {"forse": "N"}, ValueError, "did you mean 'force'"),
+        ({"a": [1.0, "x"]}, None, ValueError, "column 'a' holds numbers and 'x'"),
+        ({"a": np.array(["2020"], dtype="M8")}, None, TypeError, "column 'a': expected real numbers, not dates"),
+        ({"a": [1j]}, None, TypeError, "complex"),
+    ],
+)
+def test_columns_that_cannot_be_are_refused(columns, units, error, sentence):
+    with pytest.raises(error, match=sentence):
+        mg.Table.from_columns(columns, units)
