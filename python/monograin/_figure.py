@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Optional
+import io
+from typing import TYPE_CHECKING, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from .tables import Table
 
 if TYPE_CHECKING:
-    import matplotlib.axes
-    import matplotlib.figure
+    from matplotlib.axes import Axes
 
     from .runs import Run
 
@@ -36,44 +37,91 @@ class _Sheet(NamedTuple):
     panels: list[_Panel]
 
 
-def of_run(run: Run) -> matplotlib.figure.Figure:
-    from matplotlib.figure import Figure
+class RunFigure(Figure):  # type: ignore[misc]
+    """A figure that a notebook shows, though pyplot does not manage it."""
 
+    def _repr_png_(self) -> bytes:
+        content = io.BytesIO()
+        self.savefig(content, format="png")
+        return content.getvalue()
+
+
+def of_run(
+    run: Run,
+    columns: Union[str, Sequence[str], None],
+    x: Optional[str],
+    axes: Union[Axes, Sequence[Axes], None],
+    label: str,
+) -> Figure:
+    """Draws a run; see :meth:`monograin.Run.plot`."""
     sheet = _of_walls(run.history) or _of_body(run.history)
+    path = run[sheet.column] if sheet and len(run) > 0 else run["time"]
+    if columns is not None:
+        names = [columns] if isinstance(columns, str) else list(columns)
+        panels = [_Panel(_with_unit(run.history, name), [("", name)], 1.0) for name in names]
+        sheet = _in_si(run.history, x or (sheet.column if sheet else "time"), panels)
+    elif sheet and x is not None:
+        sheet = _in_si(run.history, x, sheet.panels)
     panels = [panel for panel in sheet.panels if _is_defined(run.history, panel)] if sheet else []
     if sheet is None or not panels or len(run) < 2:
         raise ValueError("the run has no curve to draw")
-    rows = (len(panels) + 1) // 2
-    figure = Figure(figsize=(8.0, 3.2 * rows), layout="constrained")
-    phases = _phases(np.asarray(run[sheet.column]))
-    for place, panel in enumerate(panels):
-        axes = figure.add_subplot(rows, min(2, len(panels)), place + 1)
-        _draw(axes, run, sheet, panel, phases)
+    places = _places(axes, len(panels))
+    for place, panel in zip(places, panels):
+        _draw(place, run, sheet, panel, _phases(path), label)
+    figure: Figure = places[0].figure
     return figure
 
 
-def _draw(
-    axes: matplotlib.axes.Axes, run: Run, sheet: _Sheet, panel: _Panel, phases: list[tuple[str, slice]]
-) -> None:
+def _places(axes: Union[Axes, Sequence[Axes], None], count: int) -> list[Axes]:
+    """Returns axes for some panels: those that are given, or those of a new figure."""
+    if axes is None:
+        rows = (count + 1) // 2
+        figure = RunFigure(figsize=(8.0 if count > 1 else 5.0, 3.2 * rows), layout="constrained")
+        return [figure.add_subplot(rows, min(2, count), place + 1) for place in range(count)]
+    places = list(np.ravel(np.asarray(axes, dtype=object)))
+    if len(places) < count:
+        raise ValueError(f"axes: {len(places)} for {count} panels; expected one for each")
+    return places
+
+
+def _draw(axes: Axes, run: Run, sheet: _Sheet, panel: _Panel, phases: list[tuple[str, slice]], label: str) -> None:
     x = run[sheet.column] / sheet.scale
+    # Curves that the axes show already keep their colours.
+    used = len({line.get_color() for line in axes.lines if line.get_linestyle() != "None"})
     for k, (legend, column) in enumerate(panel.columns):
         y = _values(run.history, panel, column)
-        colour = _COLOURS[k % len(_COLOURS)]
+        colour = _COLOURS[(used + k) % len(_COLOURS)]
+        name = ": ".join(filter(None, (label, legend)))
         for i, (phase, piece) in enumerate(phases):
-            axes.plot(x[piece], y[piece], _STYLES[phase], color=colour, label=legend if i == 0 else None)
+            axes.plot(x[piece], y[piece], _STYLES[phase], color=colour, label=name if i == 0 else None)
     for name, rows in _events(run.events).items():
         points = [
             (run.events[sheet.column][row] / sheet.scale, _values(run.events, panel, column)[row])
-            for legend, column in panel.columns
+            for _, column in panel.columns
             for row in rows
-            if _concerns(run.events, row, legend)
+            if _concerns(run.events, row, column)
         ]
         if points:
-            axes.plot(*zip(*points), "o", markersize=4, markerfacecolor="none", label=name)
+            shown = next((line for line in axes.lines if line.get_label() == name), None)
+            colour = shown.get_color() if shown else None
+            text = None if shown else name
+            axes.plot(*zip(*points), "o", color=colour, markersize=4, markerfacecolor="none", label=text)
     axes.set_xlabel(sheet.label)
     axes.set_ylabel(panel.label)
     if len(axes.get_legend_handles_labels()[1]) > 1:
         axes.legend(fontsize="small")
+
+
+def _in_si(history: Table, x: str, panels: list[_Panel]) -> _Sheet:
+    return _Sheet(_with_unit(history, x), x, 1.0, panels)
+
+
+def _with_unit(history: Table, name: str) -> str:
+    """Returns the label of a column. Refuses a column of words."""
+    if history[name].dtype.kind != "f":
+        raise ValueError(f"column {name!r} holds words; expected a column of numbers")
+    plain = name.partition("[")[0]
+    return f"{plain} [{history.units[plain]}]" if plain in history.units else name
 
 
 def _of_walls(history: Table) -> Optional[_Sheet]:
@@ -169,9 +217,10 @@ def _events(events: Table) -> dict[str, list[int]]:
     return rows
 
 
-def _concerns(events: Table, row: int, contact: str) -> bool:
-    """True if an event belongs to the contact class. The curve of the particle, named "", shows all."""
-    return contact in str(events["class"][row]).split("/") or not contact
+def _concerns(events: Table, row: int, column: str) -> bool:
+    """True if an event belongs to the contact class of a column. A curve of the particle shows all."""
+    contact, point, _ = column.partition(".")
+    return not point or contact in str(events["class"][row]).split("/")
 
 
 def _phases(x: NDArray[np.float64]) -> list[tuple[str, slice]]:

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
 import tomllib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping, Optional, Union
+from typing import Any, Callable, Iterable, Iterator, Mapping, Optional, Sequence, Union
 
 from numpy.typing import NDArray
 
 from . import _core, _toml
+from ._inputs import explained
+from ._optional import Axes, DataFrame, Figure
 from .errors import SolverError
 from .tables import Table
-
-if TYPE_CHECKING:
-    import matplotlib.figure
-    import pandas
-
-    from .prepared import Prepared
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -202,7 +199,8 @@ class Run:
     """A recorded run: its curves, its events, and how it ended.
 
     ``run["axial.force"]`` is a column of the history, see :class:`monograin.Table`. ``len(run)`` is its number of rows,
-    and iteration yields its rows; ``in`` and ``keys`` are about its columns. A run can be pickled and copied.
+    and iteration yields its rows; ``in`` and ``keys`` are about its columns. A run can be pickled and copied. Runs are
+    equal if their scenarios, ends and tables are. A notebook shows the first and the last rows.
     """
 
     def __init__(self, core: Union[_core.Run, _Record], scenario: Callable[[], Scenario]) -> None:
@@ -310,7 +308,7 @@ class Run:
         """Returns a column of the history, see :meth:`monograin.Table.__getitem__`."""
         return self._history[column]
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Returns a copy of the history as a ``pandas.DataFrame``.
 
         Raises:
@@ -318,7 +316,15 @@ class Run:
         """
         return self._history.to_pandas()
 
-    def plot(self) -> matplotlib.figure.Figure:
+    @explained
+    def plot(
+        self,
+        columns: Union[str, Sequence[str], None] = None,
+        *,
+        x: Optional[str] = None,
+        axes: Union[Axes, Sequence[Axes], None] = None,
+        label: str = "",
+    ) -> Figure:
         """Draws force, mean pressure, contact area and apparent radius over the displacement of the driven wall.
 
         Loading is solid, unloading dashed, reloading dotted; circles are events. A packing is drawn over its packing
@@ -326,21 +332,35 @@ class Run:
         their scales.
 
         Returns:
-            A ``matplotlib.figure.Figure`` that pyplot does not manage; save it with its method ``savefig``.
+            The ``matplotlib.figure.Figure``. If it is new, pyplot does not manage it; save it with its method
+            ``savefig``.
 
         Raises:
             ImportError: if matplotlib is not installed.
-            ValueError: if there is no curve to draw.
+            KeyError: for an unknown column.
+            ValueError: if there is no curve to draw, a column holds words, or there are fewer axes than panels.
         """
         from . import _figure
 
-        return _figure.of_run(self)
+        return _figure.of_run(self, columns, x, axes, label)
 
     def save(self, folder: Path) -> None:
         """Writes ``history.csv``, ``events.csv`` and ``run.json`` as ``monograin run -o`` does, all of them or none.
 
         Args:
             folder: folder for the files, made if it does not exist. Files of an earlier run are replaced; others stay.
+
+        A notebook shows the figure that the last line of a cell returns. In a loop, hand it to ``display`` of IPython.
+        Several runs come into one figure by its axes:
+
+        >>> figure = run.plot("axial.force", label="Y = 50 MPa")
+        >>> softer.plot("axial.force", label="Y = 30 MPa", axes=figure.axes)
+
+        Args:
+            columns: name of a column, or names with a panel for each, in SI units; None: the panels above.
+            x: name of the column for the abscissa, in SI units; None: the one above, or the time.
+            axes: axes of matplotlib, one for each panel, to draw into; None: those of a new figure.
+            label: name of the run in the legend.
 
         Raises:
             RuntimeError: if a file cannot be written, or the folder holds files but no run.
@@ -384,6 +404,18 @@ class _Source:
 
 def _of_parts(text: str, history: Table, events: Table, scenario: _Source) -> Run:
     return Run(_Record(text, history._core, events._core), scenario)
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Run):
+            return NotImplemented
+        ends = [(run.status, run.message, run.limit, run.warnings, run.history, run.events) for run in (self, other)]
+        return ends[0] == ends[1] and self.scenario == other.scenario
+
+    def __hash__(self) -> int:
+        return hash((self.status, self.history))
+
+    def _repr_html_(self) -> str:
+        return f"<p>{html.escape(repr(self))}</p>{self._history._repr_html_()}"
+
 
 
 def checked(run: Run, check: bool) -> Run:

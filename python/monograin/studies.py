@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import copy
+import html
 import json
 import os
 import types
 import warnings
-from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Optional, Union
+from typing import Any, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core, _toml
+from . import _core, _html, _toml
+from ._core import Designed, Fitted
+from ._inputs import Named, explained, same
+from ._optional import DataFrame
 from .runs import Path, Run, Scenario
 from .tables import Table
 
-if TYPE_CHECKING:
-    import pandas
-
 Source = Union[Path, Mapping[str, Any]]
 
+Curves = Union[Run, Table, Path, Mapping[str, Any], DataFrame]
 
 def sweep(
     source: Source, folder: Optional[Path] = None, *, threads: int = 0, shard: tuple[int, int] = (1, 1)
@@ -170,7 +172,16 @@ class Calibration:
         return (_restored, (Calibration, _parts_of(self._core)))
 
     def __repr__(self) -> str:
-        return f"<Calibration {self._core.name!r}: {', '.join(self.parameters)}>"
+        values = ", ".join(f"{key} = {value:.5g}" for key, value in self.values.items())
+        return f"<Calibration {self._core.name!r}: {values}>"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (key, fitted.value, fitted.standard_error, *fitted.interval, "yes" if fitted.is_determined else "no")
+            for key, fitted in self.parameters.items()
+        ]
+        headings = ("parameter", "value", "standard error", "interval from", "to", "is determined")
+        return _html.table(f"Calibration {self._core.name}, values in SI units", headings, rows)
 
 
 def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Optional[float] = None) -> Calibration:
@@ -337,6 +348,9 @@ class CurveDifference(NamedTuple):
             reference (Edmans and Sinka, eq. 7); a length x counts in units of ``R0``, any other x with a unit in
             units of its range.
         peak_error: largest difference over the magnitude of the reference at its largest x (Edmans and Sinka, eq. 8).
+    def _repr_html_(self) -> str:
+        return f"<p>{html.escape(repr(self))}</p>{self._table._repr_html_()}"
+
         coverage: share of the reference's path on which the tables could be compared.
     """
 
@@ -374,8 +388,8 @@ class Comparison(NamedTuple):
 
 
 def compare(
-    a: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame],
-    b: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame],
+    a: Curves,
+    b: Curves,
     *,
     x: str = "time",
     y: str = "",
@@ -455,7 +469,7 @@ def _data_as_texts(source: Source) -> tuple[Source, dict[str, str]]:
     return source, texts
 
 
-def _csv(data: Union[Run, Table, Mapping[str, Any], pandas.DataFrame]) -> str:
+def _csv(data: Curves) -> str:
     """Returns the numbers of a table, or of arrays, as a CSV text."""
     if isinstance(data, (Run, Table)):
         return _history(data)._core.csv()
@@ -466,7 +480,7 @@ def _csv(data: Union[Run, Table, Mapping[str, Any], pandas.DataFrame]) -> str:
     return "".join(",".join(cells) + "\n" for cells in (quoted, *rows))
 
 
-def _history(source: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame]) -> Table:
+def _history(source: Curves) -> Table:
     if isinstance(source, Run):
         return source.history
     if isinstance(source, Table):
@@ -476,7 +490,7 @@ def _history(source: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame
     return Table.read_csv(os.path.join(source, "history.csv") if os.path.isdir(source) else source)
 
 
-def _events(source: Union[Run, Table, Path, Mapping[str, Any], pandas.DataFrame]) -> Optional[Table]:
+def _events(source: Curves) -> Optional[Table]:
     if isinstance(source, Run):
         return source.events
     if not isinstance(source, (str, os.PathLike)) or not os.path.isdir(source):

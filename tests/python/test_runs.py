@@ -519,3 +519,49 @@ def test_masked_and_missing_elements_of_a_table_are_nan():
 def test_columns_that_cannot_be_are_refused(columns, units, error, sentence):
     with pytest.raises(error, match=sentence):
         mg.Table.from_columns(columns, units)
+
+
+def test_a_figure_shows_itself_in_a_notebook(die):
+    pytest.importorskip("matplotlib")
+    figure = die.run().plot()
+    assert figure._repr_png_().startswith(b"\x89PNG")
+    assert pickle.loads(pickle.dumps(figure))._repr_png_().startswith(b"\x89PNG")
+
+
+def test_columns_of_choice_are_drawn_in_si_units(die):
+    pytest.importorskip("matplotlib")
+    run = die.run()
+    (axes,) = run.plot("axial.force").axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("axial.displacement [m]", "axial.force [N]")
+    drawn = np.concatenate([line.get_ydata() for line in axes.lines if line.get_linestyle() != "None"])
+    assert np.nanmax(drawn) == np.nanmax(run["axial.force"])
+    first, second = run.plot(["axial.force[N]", "apparent_radius"], x="time").axes
+    assert (first.get_xlabel(), second.get_ylabel()) == ("time [s]", "apparent_radius [m]")
+    assert len(run.plot(x="time").axes) == 4
+    with pytest.raises(ValueError, match="'axial.regime' holds words"):
+        run.plot("axial.regime")
+    with pytest.raises(KeyError, match="axial.force"):
+        run.plot("axial.forse")
+
+
+def test_runs_share_the_axes_of_a_figure_and_differ_in_colour(die):
+    pytest.importorskip("matplotlib")
+    figure = die.run().plot("axial.force", label="hard")
+    softer = die.replace({"material.yield_stress": "30 MPa"}).run()
+    assert softer.plot("axial.force", label="soft", axes=figure.axes) is figure
+    (axes,) = figure.axes
+    colours = {line.get_label(): line.get_color() for line in axes.lines}
+    assert colours["hard"] != colours["soft"]
+    legend = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert len(legend) == len(set(legend))
+    with pytest.raises(ValueError, match="1 for 2 panels"):
+        softer.plot(["axial.force", "axial.pressure"], axes=axes)
+
+
+def test_runs_and_tables_show_their_first_and_last_rows(die):
+    run = die.run()
+    shown = run._repr_html_()
+    assert "Run complete" in shown and "axial.force [N]" in shown and "more columns" in shown
+    assert shown.count("<tr>") == 12  # headings, five rows, a gap, five rows
+    short = mg.Table.from_columns({"<a>[m]": [1.0], "word": ["x"]})._repr_html_()
+    assert "&lt;a&gt; [m]" in short and "<td>x</td>" in short and short.count("<tr>") == 2

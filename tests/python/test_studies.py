@@ -316,3 +316,12 @@ def test_a_calibration_and_a_design_can_be_pickled_and_copied(again):
     assert str(again(plan)) == str(plan)
     assert again(plan).best_by_volume == plan.best_by_volume
     assert_array_equal(again(plan).table["standard_error"], plan.table["standard_error"])
+
+
+def test_results_show_themselves_as_tables():
+    fit = mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml")
+    shown = fit._repr_html_()
+    assert "material.yield_stress" in shown and f"{fit.values['material.yield_stress']:.5g}" in shown
+    assert "yield_stress = 4.5" in repr(fit)
+    plan = mg.design(next((mg.scenario_folder() / "design").glob("*.toml")))
+    assert "standard_error" in plan._repr_html_()
