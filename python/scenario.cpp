@@ -31,26 +31,49 @@ SoundScenario checked_scenario(Scenario source) {
   return made;
 }
 
-SoundScenario parse_sound(std::string text, std::string origin, std::vector<std::string> overrides) {
-  return checked_scenario(Scenario::parse(std::move(text), std::move(origin), std::move(overrides)));
+SoundScenario parse_sound(std::string text, std::string origin, std::vector<std::string> overrides,
+                          std::optional<FileTexts> files) {
+  return checked_scenario(Scenario::parse(std::move(text), std::move(origin), std::move(overrides), std::move(files)));
 }
 
 /// The scenario with another name of its file, in whose folder the files that it names are.
 SoundScenario with_origin(const SoundScenario& scenario, std::string origin) {
   SoundScenario placed = scenario;
-  placed.source = Scenario::parse(scenario.source.text(), std::move(origin), scenario.source.overrides());
+  placed.source =
+      Scenario::parse(scenario.source.text(), std::move(origin), scenario.source.overrides(), scenario.source.files());
   return placed;
 }
 
-/// The scenario as text, with its overrides, and with absolute names of the files that it names.
-std::string toml_of(const SoundScenario& scenario) {
+/// Name of a file as the scenario has it.
+std::string name_of(const SoundScenario& scenario, const std::string& option) {
+  return std::get<std::string>(scenario.checked.options.at(option));
+}
+
+/// The scenario as text, with its overrides.
+/// @param file_of  (option, curve) -> what stands for the name of its file
+template <class FileOf>
+std::string text_of(const SoundScenario& scenario, FileOf&& file_of) {
   Scenario placed = scenario.source;
-  const std::filesystem::path folder = std::filesystem::path(placed.origin()).parent_path();
   for (const auto& [option, curve] : scenario.checked.curves) {
-    const std::filesystem::path file = folder / std::get<std::string>(scenario.checked.options.at(option));
-    placed.set(scenario.checked.model + '.' + option, file.string());
+    placed.set(scenario.checked.model + '.' + option, file_of(option, curve));
   }
   return text_with_overrides(placed.text(), placed.overrides());
+}
+
+/// The scenario as text, with its overrides, and with absolute names of the files that it names. Names of files in
+/// memory stay as they are.
+std::string toml_of(const SoundScenario& scenario) {
+  const bool is_in_memory = scenario.source.files().has_value();
+  const std::filesystem::path folder = std::filesystem::path(scenario.source.origin()).parent_path();
+  return text_of(scenario, [&](const std::string& option, const SampledCurve&) {
+    const std::string name = name_of(scenario, option);
+    return is_in_memory ? name : (folder / name).string();
+  });
+}
+
+/// The scenario as text, with its overrides, and with the content of each file in the place of its name.
+std::string content_of(const SoundScenario& scenario) {
+  return text_of(scenario, [](const std::string&, const SampledCurve& curve) { return curve.text; });
 }
 
 SoundScenario read_sound(const std::string& file) {
@@ -97,11 +120,13 @@ void add_scenario(py::module_& module) {
       .def_property_readonly("text", [](const SoundScenario& scenario) { return scenario.source.text(); })
       .def_property_readonly("origin", [](const SoundScenario& scenario) { return scenario.source.origin(); })
       .def_property_readonly("overrides", [](const SoundScenario& scenario) { return scenario.source.overrides(); })
+      .def_property_readonly("files", [](const SoundScenario& scenario) { return scenario.source.files(); })
       .def_property_readonly("name", [](const SoundScenario& scenario) { return scenario.checked.name; })
       .def_property_readonly("title", [](const SoundScenario& scenario) { return scenario.checked.title; })
       .def_property_readonly("model", [](const SoundScenario& scenario) { return scenario.checked.model; })
       .def("with_origin", &with_origin)
       .def("to_toml", &toml_of)
+      .def("content", &content_of)
       .def("run", &run_sound)
       .def("parameters", &parameters_of)
       .def("profile", &profile_of);

@@ -50,9 +50,10 @@ std::pair<fs::path, std::size_t> run_shard(const Sweep& plan, const std::string&
 }
 
 py::tuple sweep(const std::string& file, const std::optional<std::string>& text, const std::string& output, int threads,
-                std::size_t shard, std::size_t shard_count) {
+                int shard, int shard_count) {
   if (shard < 1 || shard > shard_count) throw std::invalid_argument("shard: expected (i, n) with i from 1 to n");
-  const auto [folder, missing] = run_shard(sweep_of(file, text), output, threads, {shard, shard_count});
+  const SweepShard part{static_cast<std::size_t>(shard), static_cast<std::size_t>(shard_count)};
+  const auto [folder, missing] = run_shard(sweep_of(file, text), output, threads, part);
   return py::make_tuple(folder.string(), missing);
 }
 
@@ -80,6 +81,7 @@ struct Fitted {
   std::string json;
   std::string text;
   std::string scenario_text;
+  FileTexts scenario_files;  ///< texts of the files that the scenario names
   std::vector<std::string> notes;
   std::vector<std::string> warnings;
   std::string no_figure;
@@ -108,6 +110,7 @@ Fitted calibrate_source(const std::string& file, const std::optional<std::string
                   .json = calibration_json(calibration, result),
                   .text = calibration_text(calibration, result),
                   .scenario_text = fitted_scenario_text(calibration, result),
+                  .scenario_files = fitted_scenario_files(calibration),
                   .notes = result.notes,
                   .warnings = result.warnings,
                   .no_figure = {},
@@ -192,6 +195,7 @@ void add_studies(py::module_& module) {
       .def_readonly("json", &Fitted::json)
       .def_readonly("text", &Fitted::text)
       .def_readonly("scenario_text", &Fitted::scenario_text)
+      .def_readonly("scenario_files", &Fitted::scenario_files)
       .def_readonly("notes", &Fitted::notes)
       .def_readonly("warnings", &Fitted::warnings)
       .def_readonly("no_figure", &Fitted::no_figure)

@@ -32,30 +32,42 @@ class Scenario:
         origin: name of the file that the text is from, in messages. Its stem names the scenario; file names in the
             scenario are relative to its folder.
         overrides: ``key=value`` texts, as for the option ``--set`` of the program.
+        files: texts of the files that the scenario names, by these names; no file is read then.
 
     Raises:
         ScenarioError: with every fault of the scenario.
+        TypeError: for the name of a file or of a ready scenario instead of a text.
 
     A scenario never changes, whatever the working directory later is. It can be pickled, and thus be sent to other
-    processes.
+    processes. Scenarios are equal if all their keys and the files that they name have the same content; comments, names
+    and places of files, and whether values were replaced, do not count.
     """
 
     __slots__ = ("_core",)
     _core: _core.Scenario
 
+    @explained
     def __init__(
-        self, source: Union[str, Mapping[str, Any]], *, origin: Path = "scenario.toml", overrides: Iterable[str] = ()
+        self,
+        source: Union[str, Mapping[str, Any]],
+        *,
+        origin: Path = "scenario.toml",
+        overrides: Iterable[str] = (),
+        files: Optional[Mapping[str, str]] = None,
     ) -> None:
-        is_name = isinstance(source, str) and source.endswith(".toml") and "\n" not in source and "=" not in source
+        is_name = isinstance(source, str) and source.strip() and not set("\n=[") & set(source)
         if is_name or isinstance(source, os.PathLike):
-            raise TypeError(f"{str(source)!r} is the name of a file; Scenario.load reads files")
+            raise TypeError(
+                f"source: {str(source)!r} is no TOML text; Scenario.load reads files, and monograin.scenario has ready scenarios"
+            )
         if isinstance(overrides, str):
             raise TypeError(f"overrides: expected a list of texts, such as [{overrides!r}], not one str")
         text = source if isinstance(source, str) else _toml.document(source)
-        parsed = _core.Scenario.parse(text, os.fspath(origin), list(overrides))
+        parsed = _core.Scenario.parse(text, os.fspath(origin), list(overrides), None if files is None else dict(files))
         self._core = parsed.with_origin(os.path.abspath(origin))
 
     @classmethod
+    @explained
     def load(cls, path: Path) -> Scenario:
         """Reads and checks a scenario file.
 
@@ -66,6 +78,7 @@ class Scenario:
         scenario._core = _core.Scenario.read(os.path.abspath(path))
         return scenario
 
+    @explained
     def replace(self, values: Mapping[str, Any]) -> Scenario:
         """Returns this scenario with other values of some keys.
 
@@ -81,7 +94,7 @@ class Scenario:
         overrides = self.overrides
         for key, value in values.items():
             overrides = _core.with_override(overrides, f"{key}={_toml.text_of(value, key)}")
-        return Scenario(self.text, origin=self.origin, overrides=overrides)
+        return Scenario(self.text, origin=self.origin, overrides=overrides, files=self.files)
 
     @property
     def name(self) -> str:
@@ -106,7 +119,7 @@ class Scenario:
     def to_toml(self) -> str:
         """Returns the scenario as TOML text, with the values that were replaced, and absolute names of files.
 
-        Comments are lost if there are such values or files.
+        Comments are lost if there are such values or files. Names of :attr:`files` in memory stay as they are.
         """
         return self._core.to_toml()
 
@@ -123,6 +136,11 @@ class Scenario:
     def overrides(self) -> list[str]:
         """Values that were replaced, as ``key=value`` texts in the order of the replacements."""
         return self._core.overrides
+
+    @property
+    def files(self) -> Optional[dict[str, str]]:
+        """Texts of the files that the scenario names, if it has them in memory; None: they are read beside the origin."""
+        return self._core.files
 
     def run(self, *, check: bool = True) -> Run:
         """Runs the scenario. Other threads continue during the run.
@@ -145,33 +163,28 @@ class Scenario:
 
         Raises:
             ScenarioError: if the scenario lacks a key, a key takes no number, or a key is listed twice.
+            ValueError: without keys.
         """
-        from .prepared import Prepared
+        prepared: Prepared = Prepared(self, keys)
+        return prepared
 
-        return Prepared(self, keys)
-
-    def _identity(self) -> tuple[str, str, tuple[str, ...]]:
-        return (self.text, self.origin, tuple(self.overrides))
+    def _content(self) -> str:
+        return json.dumps(tomllib.loads(self._core.content()), sort_keys=True)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
             return NotImplemented
-        return self._identity() == other._identity()
+        return self._content() == other._content()
 
     def __hash__(self) -> int:
-        return hash(self._identity())
+        return hash(self._content())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # With the absolute path of the origin another process finds the files that the scenario names.
-        return (_restored, self._identity())
+        return (_made, (_Source.of(self),))
 
     def __repr__(self) -> str:
         replaced = "".join(f", {text}" for text in self.overrides)
         return f"<Scenario {self.name!r}, model {self.model}{replaced}>"
-
-
-def _restored(text: str, origin: str, overrides: tuple[str, ...]) -> Scenario:
-    return Scenario(text, origin=origin, overrides=overrides)
 
 
 class _Record:
@@ -203,6 +216,8 @@ class Run:
     equal if their scenarios, ends and tables are. A notebook shows the first and the last rows.
     """
 
+    __slots__ = ("_core", "_scenario", "_history", "_events")
+
     def __init__(self, core: Union[_core.Run, _Record], scenario: Callable[[], Scenario]) -> None:
         self._core = core
         self._scenario = scenario
@@ -210,11 +225,11 @@ class Run:
         self._events = Table(core.events)
 
     @classmethod
+    @explained
     def load(cls, folder: Path) -> Run:
         """Reads a run from the files that :meth:`save` or ``monograin run`` has left.
 
-        Its ``scenario`` is made anew from ``run.json`` when it is asked for; files that it names have to be in the
-        working directory.
+        Its ``scenario`` is made anew from ``run.json``, with the files that it names, when it is asked for.
 
         Raises:
             FileNotFoundError: if the folder lacks a file of a run.
@@ -228,13 +243,14 @@ class Run:
                 text = stream.read()
             core = _Record(text, history._core, events._core)
             recorded = json.loads(text)["scenario"]
-            source = recorded["text"], f"{recorded['name']}.toml", tuple(recorded["overrides"])
+            files = {entry["name"]: entry["text"] for entry in recorded["files"].values()}
+            source = _Source(recorded["text"], f"{recorded['name']}.toml", tuple(recorded["overrides"]), files or None)
         except (KeyError, TypeError, json.JSONDecodeError) as error:
             raise ValueError(f"{file}: not what a run leaves") from error
-        return cls(core, _Source(*source))
+        return cls(core, source)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        scenario = self._scenario if isinstance(self._scenario, _Source) else _Source(*self.scenario._identity())
+        scenario = self._scenario if isinstance(self._scenario, _Source) else _Source.of(self.scenario)
         return (_of_parts, (self._core.json(), self.history, self.events, scenario))
 
     @property
@@ -304,6 +320,7 @@ class Run:
 
     _ipython_key_completions_ = keys
 
+    @explained
     def __getitem__(self, column: str) -> NDArray[Any]:
         """Returns a column of the history, see :meth:`monograin.Table.__getitem__`."""
         return self._history[column]
@@ -331,6 +348,18 @@ class Run:
         fraction, a material point over its axial strain. Quantities are dimensionless if the header of the history has
         their scales.
 
+        A notebook shows the figure that the last line of a cell returns. In a loop, hand it to ``display`` of IPython.
+        Several runs come into one figure by its axes:
+
+        >>> figure = run.plot("axial.force", label="Y = 50 MPa")
+        >>> softer.plot("axial.force", label="Y = 30 MPa", axes=figure.axes)
+
+        Args:
+            columns: name of a column, or names with a panel for each, in SI units; None: the panels above.
+            x: name of the column for the abscissa, in SI units; None: the one above, or the time.
+            axes: axes of matplotlib, one for each panel, to draw into; None: those of a new figure.
+            label: name of the run in the legend.
+
         Returns:
             The ``matplotlib.figure.Figure``. If it is new, pyplot does not manage it; save it with its method
             ``savefig``.
@@ -344,29 +373,22 @@ class Run:
 
         return _figure.of_run(self, columns, x, axes, label)
 
+    @explained
     def save(self, folder: Path) -> None:
         """Writes ``history.csv``, ``events.csv`` and ``run.json`` as ``monograin run -o`` does, all of them or none.
 
         Args:
             folder: folder for the files, made if it does not exist. Files of an earlier run are replaced; others stay.
 
-        A notebook shows the figure that the last line of a cell returns. In a loop, hand it to ``display`` of IPython.
-        Several runs come into one figure by its axes:
-
-        >>> figure = run.plot("axial.force", label="Y = 50 MPa")
-        >>> softer.plot("axial.force", label="Y = 30 MPa", axes=figure.axes)
-
-        Args:
-            columns: name of a column, or names with a panel for each, in SI units; None: the panels above.
-            x: name of the column for the abscissa, in SI units; None: the one above, or the time.
-            axes: axes of matplotlib, one for each panel, to draw into; None: those of a new figure.
-            label: name of the run in the legend.
-
         Raises:
             RuntimeError: if a file cannot be written, or the folder holds files but no run.
+            ValueError: for an empty name.
         """
+        if not os.fspath(folder):
+            raise ValueError("folder: expected a name, not an empty text")
         self._core.save(os.fspath(folder))
 
+    @explained
     def profile(self, time: float) -> Table:
         """Returns pressure and surface under the contacts at one instant, and runs the scenario again up to it.
 
@@ -379,9 +401,20 @@ class Run:
 
         Raises:
             RuntimeError: if the model has no profile, the run ends before the instant, or no contact is closed then.
-            ScenarioError: if the scenario of a loaded run names files that are not in the working directory.
         """
         return Table(self.scenario._core.profile(float(time)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Run):
+            return NotImplemented
+        ends = [(run.status, run.message, run.limit, run.warnings, run.history, run.events) for run in (self, other)]
+        return ends[0] == ends[1] and self.scenario == other.scenario
+
+    def __hash__(self) -> int:
+        return hash((self.status, self.history))
+
+    def _repr_html_(self) -> str:
+        return f"<p>{html.escape(repr(self))}</p>{self._history._repr_html_()}"
 
     def __repr__(self) -> str:
         why = f" ({self.message})" if self.message else ""
@@ -397,28 +430,30 @@ class _Source:
     text: str
     origin: str
     overrides: tuple[str, ...]
+    files: Optional[dict[str, str]]
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> _Source:
+        # With the absolute path of the origin another process finds the files that the scenario names.
+        return cls(scenario.text, scenario.origin, tuple(scenario.overrides), scenario.files)
 
     def __call__(self) -> Scenario:
-        return _restored(self.text, self.origin, self.overrides)
+        return Scenario(self.text, origin=self.origin, overrides=self.overrides, files=self.files)
+
+
+def _made(source: _Source) -> Scenario:
+    return source()
 
 
 def _of_parts(text: str, history: Table, events: Table, scenario: _Source) -> Run:
     return Run(_Record(text, history._core, events._core), scenario)
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Run):
-            return NotImplemented
-        ends = [(run.status, run.message, run.limit, run.warnings, run.history, run.events) for run in (self, other)]
-        return ends[0] == ends[1] and self.scenario == other.scenario
-
-    def __hash__(self) -> int:
-        return hash((self.status, self.history))
-
-    def _repr_html_(self) -> str:
-        return f"<p>{html.escape(repr(self))}</p>{self._history._repr_html_()}"
-
 
 
 def checked(run: Run, check: bool) -> Run:
     if check and run.status == "failed":
         raise SolverError(run.message, run)
     return run
+
+
+# A prepared scenario makes runs, and a scenario makes prepared ones.
+from .prepared import Prepared  # noqa: E402

@@ -21,9 +21,10 @@ from .runs import Path, Run, Scenario
 from .tables import Table
 
 Source = Union[Path, Mapping[str, Any]]
-
 Curves = Union[Run, Table, Path, Mapping[str, Any], DataFrame]
 
+
+@explained
 def sweep(
     source: Source, folder: Optional[Path] = None, *, threads: int = 0, shard: tuple[int, int] = (1, 1)
 ) -> Optional[Table]:
@@ -51,6 +52,7 @@ def sweep(
     return Table.read_csv(os.path.join(where, "results.csv")) if missing == 0 else None
 
 
+@explained
 def sensitivity(source: Source, folder: Optional[Path] = None, *, threads: int = 0, confidence: float = 0.95) -> Table:
     """Computes how much each key contributes to the spread of results, as ``monograin sensitivity`` does.
 
@@ -78,7 +80,7 @@ def sensitivity(source: Source, folder: Optional[Path] = None, *, threads: int =
         raise ValueError("confidence: expected a number in (0, 1)")
     where, remarks = _core.sensitivity(*_named_text(source, "sweep.toml"), _folder(folder), threads, confidence)
     for remark in remarks:
-        warnings.warn(remark, RuntimeWarning, stacklevel=2)
+        warnings.warn(remark, RuntimeWarning, stacklevel=3)
     return Table.read_csv(os.path.join(where, "sensitivity.csv"))
 
 
@@ -103,32 +105,62 @@ class FittedParameter(NamedTuple):
     is_determined: bool
 
 
-class Calibration:
-    """Result of a calibration: fitted parameters, their uncertainty, and the fit itself. It can be pickled and copied."""
+class _Result:
+    """What calibrations and designs have in common: text, pickling, equality."""
 
-    def __init__(self, core: _core.Fitted) -> None:
+    __slots__ = ("_core",)
+    _core: Any
+
+    def __str__(self) -> str:
+        text: str = self._core.text
+        return text
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_restored, (type(self), _parts_of(self._core)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, type(self)):
+            return NotImplemented
+        return _parts_of(self._core) == _parts_of(other._core)
+
+    def __hash__(self) -> int:
+        return hash(self._core.text)
+
+
+class Calibration(_Result):
+    """Result of a calibration: fitted parameters, their uncertainty, and the fit itself.
+
+    It can be pickled and copied. Results are equal if all their parts are. A notebook shows the parameters.
+    """
+
+    __slots__ = ("_info",)
+    _core: Fitted
+
+    def __init__(self, core: Fitted) -> None:
         self._core = core
         self._info: dict[str, Any] = json.loads(core.json)
 
     @property
     def parameters(self) -> dict[str, FittedParameter]:
         """The fitted parameters, by their keys."""
-        return {
-            entry["key"]: FittedParameter(
-                entry["value"],
-                _number(entry["standard_error"]),
-                (_number(entry["interval"][0]), _number(entry["interval"][1])),
-                (entry["bounds"][0], entry["bounds"][1]),
-                entry["at_bound"],
-                entry["is_determined"],
-            )
-            for entry in self._info["parameters"]
-        }
+        return Named(
+            {
+                entry["key"]: FittedParameter(
+                    entry["value"],
+                    _number(entry["standard_error"]),
+                    (_number(entry["interval"][0]), _number(entry["interval"][1])),
+                    (entry["bounds"][0], entry["bounds"][1]),
+                    entry["at_bound"],
+                    entry["is_determined"],
+                )
+                for entry in self._info["parameters"]
+            }
+        )
 
     @property
     def values(self) -> dict[str, float]:
         """Best values by key, in SI units, as :meth:`monograin.Scenario.replace` takes them."""
-        return {key: parameter.value for key, parameter in self.parameters.items()}
+        return Named({key: parameter.value for key, parameter in self.parameters.items()})
 
     @property
     def covariance(self) -> NDArray[np.float64]:
@@ -156,20 +188,19 @@ class Calibration:
         return self._core.warnings
 
     @property
+    def scenario(self) -> Scenario:
+        """The scenario with the fitted parameters, and the files that it names in memory."""
+        return Scenario(self.scenario_text, origin="fitted.toml", files=self._core.scenario_files or None)
+
+    @property
     def scenario_text(self) -> str:
-        """The scenario with the fitted parameters, as TOML text."""
+        """The scenario with the fitted parameters, as ``fitted.toml`` has it; files that it names lie beside that file."""
         return self._core.scenario_text
 
     @property
     def info(self) -> dict[str, Any]:
         """Content of ``calibration.json``: parameters, statistics, minima, data."""
         return copy.deepcopy(self._info)
-
-    def __str__(self) -> str:
-        return self._core.text
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (_restored, (Calibration, _parts_of(self._core)))
 
     def __repr__(self) -> str:
         values = ", ".join(f"{key} = {value:.5g}" for key, value in self.values.items())
@@ -184,6 +215,7 @@ class Calibration:
         return _html.table(f"Calibration {self._core.name}, values in SI units", headings, rows)
 
 
+@explained
 def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Optional[float] = None) -> Calibration:
     """Fits parameters of a scenario to measured data, as ``monograin calibrate`` does.
 
@@ -209,9 +241,9 @@ def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Opti
     complete, data = _data_as_texts(source)
     core = _core.calibrate(*_named_text(complete, "calibration.toml"), data, _folder(folder), level)
     if core.no_figure:
-        warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=3)
     for warning in core.warnings:
-        warnings.warn(warning, RuntimeWarning, stacklevel=2)
+        warnings.warn(warning, RuntimeWarning, stacklevel=3)
     return Calibration(core)
 
 
@@ -241,16 +273,25 @@ class ExpectedErrors(NamedTuple):
     @property
     def is_determined(self) -> dict[str, bool]:
         """True for each parameter that the measurements determine, by its key."""
-        return {key: bool(np.isfinite(error)) for key, error in self.standard_errors.items()}
+        return Named({key: bool(np.isfinite(error)) for key, error in self.standard_errors.items()})
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ExpectedErrors) and same(tuple(self), tuple(other))
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
 
 
-class Design:
+class Design(_Result):
     """Expected errors of the parameters from a planned experiment, alone and with each candidate program.
 
-    It can be pickled and copied.
+    It can be pickled and copied. Results are equal if all their parts are. A notebook shows the errors.
     """
 
-    def __init__(self, core: _core.Designed) -> None:
+    __slots__ = ("_table",)
+    _core: Designed
+
+    def __init__(self, core: Designed) -> None:
         self._core = core
         self._table = Table(core.table)
 
@@ -258,7 +299,7 @@ class Design:
     def values(self) -> dict[str, float]:
         """Values of the parameters that the plan assumes as true, by key, in SI units."""
         count = len(self._table) // (len(self._core.candidates) + self._core.has_planned)
-        return dict(zip(self._table["key"][:count].tolist(), self._table["value"][:count].tolist()))
+        return Named(zip(self._table["key"][:count].tolist(), self._table["value"][:count].tolist()))
 
     @property
     def planned(self) -> Optional[ExpectedErrors]:
@@ -269,7 +310,7 @@ class Design:
     def candidates(self) -> dict[str, ExpectedErrors]:
         """Errors with the planned programs and one candidate, by the candidate's name."""
         first = int(self._core.has_planned)
-        return {name: self._errors(first + k) for k, name in enumerate(self._core.candidates)}
+        return Named({name: self._errors(first + k) for k, name in enumerate(self._core.candidates)})
 
     @property
     def best_by_volume(self) -> Optional[str]:
@@ -284,7 +325,7 @@ class Design:
     @property
     def notes(self) -> dict[str, list[str]]:
         """Remarks on the run of each program, by its name."""
-        return dict(zip(self._core.programs, self._core.notes))
+        return Named(zip(self._core.programs, self._core.notes))
 
     @property
     def table(self) -> Table:
@@ -297,22 +338,20 @@ class Design:
         errors = self._table["standard_error"][rows]
         correlation: NDArray[np.float64] = np.column_stack([self._table[f"correlation({key})"][rows] for key in values])
         return ExpectedErrors(
-            dict(zip(values, errors.tolist())),
+            Named(zip(values, errors.tolist())),
             errors[:, None] * correlation * errors,
             correlation,
             *(float(self._table[name][rows][0]) for name in ("volume", "relative_variances", "log_determinant")),
         )
 
-    def __str__(self) -> str:
-        return self._core.text
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (_restored, (Design, _parts_of(self._core)))
-
     def __repr__(self) -> str:
         return f"<Design {self._core.name!r}: {', '.join(self._core.programs)}>"
 
+    def _repr_html_(self) -> str:
+        return f"<p>{html.escape(repr(self))}</p>{self._table._repr_html_()}"
 
+
+@explained
 def design(source: Source, folder: Optional[Path] = None) -> Design:
     """Computes the expected errors of the parameters from a planned experiment, as ``monograin design`` does.
 
@@ -332,7 +371,7 @@ def design(source: Source, folder: Optional[Path] = None) -> Design:
     """
     core = _core.design(*_named_text(source, "design.toml"), _folder(folder))
     if core.no_figure:
-        warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=3)
     return Design(core)
 
 
@@ -348,9 +387,6 @@ class CurveDifference(NamedTuple):
             reference (Edmans and Sinka, eq. 7); a length x counts in units of ``R0``, any other x with a unit in
             units of its range.
         peak_error: largest difference over the magnitude of the reference at its largest x (Edmans and Sinka, eq. 8).
-    def _repr_html_(self) -> str:
-        return f"<p>{html.escape(repr(self))}</p>{self._table._repr_html_()}"
-
         coverage: share of the reference's path on which the tables could be compared.
     """
 
@@ -387,6 +423,7 @@ class Comparison(NamedTuple):
     gaps: list[Gap]
 
 
+@explained
 def compare(
     a: Curves,
     b: Curves,

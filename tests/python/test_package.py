@@ -11,6 +11,7 @@ import pathlib
 import subprocess
 import sys
 import tarfile
+import typing
 
 import pytest
 
@@ -29,6 +30,16 @@ def test_every_public_name_is_documented():
             for member, entry in vars(value).items():
                 if not member.startswith("_") and (inspect.isfunction(entry) or isinstance(entry, (property, classmethod))):
                     assert inspect.getdoc(entry), f"{name}.{member}"
+
+
+def test_annotations_of_public_functions_can_be_read():
+    public = [getattr(mg, name) for name in mg.__all__]
+    owners = [value for value in public if inspect.isclass(value) and not issubclass(value, BaseException)]
+    functions = [entry for owner in owners for entry in vars(owner).values()] + public
+    functions = [entry for entry in functions if inspect.isfunction(entry) and not entry.__name__.startswith("_")]
+    assert len(functions) > 20
+    for function in functions:
+        assert "return" in typing.get_type_hints(function), function
 
 
 def test_the_distribution_lists_its_files_with_their_digests():
@@ -94,6 +105,8 @@ def test_a_users_program_passes_the_type_checker(tmp_path):
         "run: mg.Run = mg.scenario('die').run()\n"
         "table: np.ndarray[object, np.dtype[np.float64]] = mg.scenario().prepare(['x']).map([[1.0]], ['a'])\n"
         "force = mg.laws.hertz.force(1.0, 1.0, [1.0])\n"
+        "has_statuses = len(run) > 3\n"
+        "either = mg.scenario().prepare(['x']).map([[1.0]], ['a'], statuses=has_statuses)\n"
     )
     (tmp_path / "bad.py").write_text("import monograin as mg\nmg.scenario('die').run().statsu\nmg.Scenario.load(3)\n")
     environment = {**os.environ, "MYPYPATH": str(ROOT / "python"), "MYPY_CACHE_DIR": str(tmp_path / "cache")}

@@ -408,7 +408,6 @@ def test_a_run_is_a_mapping_of_columns_and_yields_rows():
 def test_a_copied_or_pickled_run_is_the_same_run(tmp_path):
     run = mg.scenario("compressible").run()
     run.save(tmp_path / "saved")
-    # The scenario of a loaded run names a file that is not here; the run can be copied all the same.
     for origin in (run, mg.Run.load(tmp_path / "saved")):
         for again in (copy.copy(origin), pickle.loads(pickle.dumps(origin))):
             assert again.status == run.status and again.info["status"] == run.status
@@ -483,44 +482,6 @@ def test_a_table_of_unequal_arrays_is_refused(columns):
         mg.Table.from_columns(columns)
 
 
-def test_rows_of_a_long_table_come_one_after_the_other():
-    table = mg.Table.from_columns({"x": np.arange(3000.0), "word": ["a", "b", "c"] * 1000})
-    rows = list(table)
-    assert [row["x"] for row in rows] == list(range(3000))
-    assert rows[2999]["word"] == "c"
-    assert next(iter(table)) == {"x": 0.0, "word": "a"}
-
-
-def test_masked_and_missing_elements_of_a_table_are_nan():
-    pandas = pytest.importorskip("pandas")
-    table = mg.Table.from_columns(
-        {
-            "masked": np.ma.array([1, 2], mask=[False, True]),
-            "none": [1.0, None],
-            "pandas": pandas.array([1, None], dtype="Int64"),
-            "word": ["x", None],
-        }
-    )
-    for name in ("masked", "none", "pandas"):
-        assert_array_equal(table[name], [1.0, np.nan], err_msg=name)
-    assert table["word"].tolist() == ["x", ""]
-
-
-@pytest.mark.parametrize(
-    "columns, units, error, sentence",
-    [
-        ({"a[N]": [1.0], "a": [2.0]}, {"a": "N"}, ValueError, "two columns 'a' of one unit"),
-        ({"force": [1.0]}, {"forse": "N"}, ValueError, "did you mean 'force'"),
-        ({"a": [1.0, "x"]}, None, ValueError, "column 'a' holds numbers and 'x'"),
-        ({"a": np.array(["2020"], dtype="M8")}, None, TypeError, "column 'a': expected real numbers, not dates"),
-        ({"a": [1j]}, None, TypeError, "complex"),
-    ],
-)
-def test_columns_that_cannot_be_are_refused(columns, units, error, sentence):
-    with pytest.raises(error, match=sentence):
-        mg.Table.from_columns(columns, units)
-
-
 def test_a_figure_shows_itself_in_a_notebook(die):
     pytest.importorskip("matplotlib")
     figure = die.run().plot()
@@ -565,3 +526,123 @@ def test_runs_and_tables_show_their_first_and_last_rows(die):
     assert shown.count("<tr>") == 12  # headings, five rows, a gap, five rows
     short = mg.Table.from_columns({"<a>[m]": [1.0], "word": ["x"]})._repr_html_()
     assert "&lt;a&gt; [m]" in short and "<td>x</td>" in short and short.count("<tr>") == 2
+
+
+def test_a_loaded_run_keeps_the_files_of_its_scenario(tmp_path, monkeypatch):
+    run = mg.scenario("hollomon").run()
+    run.save(tmp_path / "saved")
+    monkeypatch.chdir(tmp_path)
+    for again in (mg.Run.load("saved"), pickle.loads(pickle.dumps(mg.Run.load("saved")))):
+        assert again == run
+        assert len(again.profile(0.5)) == len(run.profile(0.5))
+        scenario = again.scenario.replace({"output.points": 20})
+        expected = run.scenario.replace({"output.points": 20}).run()["axial.force"]
+        assert_array_equal(scenario.run()["axial.force"], expected)
+        assert_array_equal(scenario.prepare(["material.yield_stress"]).map([3.498409e6], ["end(axial.force)"]), [[expected[-1]]])
+
+
+def test_equality_is_that_of_contents(die, tmp_path):
+    run = die.run()
+    for again in (copy.copy(run), die.run(), pickle.loads(pickle.dumps(run))):
+        assert again == run and hash(again) == hash(run)
+        assert again.history == run.history
+    assert run != die.replace({"material.yield_stress": "49 MPa"}).run()
+    assert run.history != run.events
+    assert mg.Scenario(die.text) == die == mg.Scenario(die.to_dict())
+    assert hash(mg.Scenario(die.to_dict())) == hash(die)
+    assert die.replace({"material.yield_stress": "49 MPa"}) != die
+    changed = mg.Scenario(die.text.replace('"50 MPa"', '"49 MPa"'))
+    assert die.replace({"material.yield_stress": "49 MPa"}) == changed
+    hollomon = mg.scenario("hollomon")
+    assert mg.Scenario(hollomon.to_dict()) == hollomon
+    (name,) = hollomon._core.files or ["hollomon-pressure.csv"]
+    other = mg.Scenario(hollomon.text, files={name: "delta_max_over_R,p_over_Y\n0,3.6\n0.1,5\n0.3,6\n0.6,6\n"})
+    assert other != hollomon
+
+
+@pytest.mark.parametrize("wrong", [0, -1, None, slice(0, 3), ["time"]])
+def test_only_a_name_finds_a_column(die, wrong):
+    with pytest.raises(TypeError, match="column: expected str, not"):
+        die.run()[wrong]
+
+
+@pytest.mark.parametrize(
+    "call, sentence",
+    [
+        (lambda: mg.Scenario(None), r"source: expected str or Mapping\[str, Any\], not None"),
+        (lambda: mg.Scenario(mg.scenario("die")), "source: expected str"),
+        (lambda: mg.Scenario([1]), "source: expected str"),
+        (lambda: mg.scenario("die").replace(None), r"values: expected Mapping\[str, Any\], not None"),
+        (lambda: mg.scenario("die").replace([("a", 1)]), "values: expected Mapping"),
+        (lambda: mg.Scenario.load(3), "path: expected str or PathLike"),
+        (lambda: mg.parameters("die"), "scenario: expected Scenario, not 'die'"),
+        (lambda: mg.Prepared("die", ["material.yield_stress"]), "scenario: expected Scenario, not 'die'"),
+        (lambda: mg.Run.load(None), "folder: expected str"),
+        (lambda: mg.Table.from_columns([1, 2]), "columns: expected arrays by name"),
+        (lambda: mg.Scenario("die"), "no TOML text; Scenario.load reads files, and monograin.scenario has ready"),
+    ],
+)
+def test_a_wrong_type_is_a_sentence_with_the_argument(call, sentence):
+    with pytest.raises(TypeError, match=sentence):
+        call()
+
+
+def test_names_that_are_unknown_bring_near_ones(die):
+    for mapping, name, near in (
+        (die.run(), "force", "axial.force"),
+        (die.run().units, "axial.forc", "axial.force"),
+        (mg.models(), "mrd", "mdr"),
+        (mg.models()["mdr"].material, "yeld_stress", "yield_stress"),
+        (mg.parameters(die), "yield_stres", "yield_stress"),
+    ):
+        with pytest.raises(KeyError, match=f"there is no '{name}'; did you mean .*'{near}'"):
+            mapping[name]
+    assert len(repr(mg.models())) < 4000
+
+
+def test_a_folder_without_a_name_is_refused(die):
+    with pytest.raises(ValueError, match="folder: expected a name"):
+        die.run().save("")
+
+
+def test_rows_of_a_long_table_come_one_after_the_other():
+    table = mg.Table.from_columns({"x": np.arange(3000.0), "word": ["a", "b", "c"] * 1000})
+    rows = list(table)
+    assert [row["x"] for row in rows] == list(range(3000))
+    assert rows[2999]["word"] == "c"
+    assert next(iter(table)) == {"x": 0.0, "word": "a"}
+
+
+def test_masked_and_missing_elements_of_a_table_are_nan():
+    pandas = pytest.importorskip("pandas")
+    table = mg.Table.from_columns(
+        {
+            "masked": np.ma.array([1, 2], mask=[False, True]),
+            "none": [1.0, None],
+            "pandas": pandas.array([1, None], dtype="Int64"),
+            "word": ["x", None],
+        }
+    )
+    for name in ("masked", "none", "pandas"):
+        assert_array_equal(table[name], [1.0, np.nan], err_msg=name)
+    assert table["word"].tolist() == ["x", ""]
+
+
+@pytest.mark.parametrize(
+    "columns, units, error, sentence",
+    [
+        ({"a[N]": [1.0], "a": [2.0]}, {"a": "N"}, ValueError, "two columns 'a' of one unit"),
+        ({"force": [1.0]}, {"forse": "N"}, ValueError, "did you mean 'force'"),
+        ({"a": [1.0, "x"]}, None, ValueError, "column 'a' holds numbers and 'x'"),
+        ({"a": np.array(["2020"], dtype="M8")}, None, TypeError, "column 'a': expected real numbers, not dates"),
+        ({"a": [1j]}, None, TypeError, "complex"),
+    ],
+)
+def test_columns_that_cannot_be_are_refused(columns, units, error, sentence):
+    with pytest.raises(error, match=sentence):
+        mg.Table.from_columns(columns, units)
+
+
+def test_a_run_takes_no_new_attributes(die):
+    with pytest.raises(AttributeError):
+        die.run().notamember = 1

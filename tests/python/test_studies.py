@@ -9,7 +9,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 import monograin as mg
 
@@ -259,8 +259,10 @@ def test_a_run_does_not_differ_from_itself_and_does_from_another(die, tmp_path):
     arrays = {name: softer.history[name[:-3]] for name in ("axial.displacement[m]", "axial.force[N]")}
     (of_arrays,) = mg.compare(run, arrays, x="axial.displacement", y="axial.force").curves
     assert of_arrays == force
-    with pytest.raises(RuntimeError):
+    with pytest.raises(RuntimeError, match="did you mean 'axial.force'"):
         mg.compare(run, softer, y="axial.forse")
+    with pytest.raises(TypeError, match="y: expected str, not"):
+        mg.compare(run, softer, y=["axial.force"])
 
 
 def test_models_are_those_of_the_program(run_program, tmp_path):
@@ -297,7 +299,7 @@ def test_the_schema_is_that_of_the_program(run_program, tmp_path):
 
 
 def test_an_unknown_ready_scenario_names_those_there_are():
-    with pytest.raises(KeyError, match="die"):
+    with pytest.raises(KeyError, match="did you mean 'die'"):
         mg.scenario("dye")
 
 
@@ -312,10 +314,32 @@ def test_a_calibration_and_a_design_can_be_pickled_and_copied(again):
     assert other.parameters == fit.parameters
     assert (str(other), repr(other), other.notes, other.scenario_text) == (str(fit), repr(fit), fit.notes, fit.scenario_text)
     assert_array_equal(other.fit["residual"], fit.fit["residual"])
+    assert other == fit and hash(other) == hash(fit)
     plan = mg.design(next((mg.scenario_folder() / "design").glob("*.toml")))
     assert str(again(plan)) == str(plan)
+    assert again(plan) == plan and plan.planned == plan.planned
+    assert plan.candidates["unloading"] != plan.planned
     assert again(plan).best_by_volume == plan.best_by_volume
     assert_array_equal(again(plan).table["standard_error"], plan.table["standard_error"])
+
+
+def test_the_scenario_of_a_fit_runs_anywhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scenario = mg.scenario("hollomon")
+    run = scenario.run()
+    loading = slice(0, int(np.argmax(run["axial.displacement"])) + 1)
+    data = {name: run[name][loading] for name in ("axial.displacement[m]", "axial.force[N]")}
+    fit = mg.calibrate(
+        {
+            "scenario": scenario,
+            "data": {"file": data, "x": "axial.displacement[m]", "y": "axial.force[N]"},
+            "free": {"material.yield_stress": {"from": 1e6, "to": 1e7}},
+        }
+    )
+    value = mg.parameters(fit.scenario)["yield_stress"].value
+    assert value == fit.values["material.yield_stress"] == pytest.approx(3.498409e6, rel=1e-6)
+    force = fit.scenario.run()["axial.force"]
+    assert_allclose(force[loading], run["axial.force"][loading], rtol=1e-5, atol=1e-6 * run["axial.force"].max())
 
 
 def test_results_show_themselves_as_tables():
@@ -325,3 +349,13 @@ def test_results_show_themselves_as_tables():
     assert "yield_stress = 4.5" in repr(fit)
     plan = mg.design(next((mg.scenario_folder() / "design").glob("*.toml")))
     assert "standard_error" in plan._repr_html_()
+
+
+def test_wrong_types_of_studies_are_sentences(die, tmp_path):
+    with pytest.raises(TypeError, match="threads: expected int, not 1.5"):
+        mg.sweep({"scenario": die, "vary": {"output.points": {"values": [20, 30]}}}, tmp_path / "swept", threads=1.5)
+    with pytest.raises(ValueError, match="shard: expected"):
+        mg.sweep({"scenario": die, "vary": {"output.points": {"values": [20, 30]}}}, tmp_path / "swept", shard=(-1, 2))
+    for data in (np.zeros((3, 2)), [1.0, 2.0]):
+        with pytest.raises(TypeError, match="columns: expected arrays by name"):
+            mg.calibrate(_uniaxial_fit(data))
