@@ -62,9 +62,9 @@ struct type_caster<monograin::python::Numbers> {
         Py_TYPE(source.ptr()) == npy_api::get().PyArray_Type_ &&
         std::string_view("fiub").find(reinterpret_borrow<array>(source).dtype().kind()) != std::string_view::npos;
     const bool is_plain = PyFloat_Check(source.ptr()) || PyLong_CheckExact(source.ptr()) || is_plain_array;
-    value.array = is_plain ? monograin::python::Array::ensure(source)
-                           : module_::import("monograin._inputs").attr("numbers")(source);
-    return static_cast<bool>(value.array);
+    if (is_plain) value.array = monograin::python::Array::ensure(source);
+    if (!value.array) value.array = module_::import("monograin._inputs").attr("numbers")(source);
+    return true;
   }
 };
 

@@ -79,6 +79,9 @@ def _places(axes: Union[Axes, Sequence[Axes], None], count: int) -> list[Axes]:
         figure = RunFigure(figsize=(8.0 if count > 1 else 5.0, 3.2 * rows), layout="constrained")
         return [figure.add_subplot(rows, min(2, count), place + 1) for place in range(count)]
     places = list(np.ravel(np.asarray(axes, dtype=object)))
+    for place in places:
+        if not hasattr(place, "plot"):
+            raise TypeError(f"axes: expected axes of matplotlib, not {place!r}")
     if len(places) < count:
         raise ValueError(f"axes: {len(places)} for {count} panels; expected one for each")
     return places

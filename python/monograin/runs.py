@@ -139,7 +139,10 @@ class Scenario:
 
     @property
     def files(self) -> Optional[dict[str, str]]:
-        """Texts of the files that the scenario names, if it has them in memory; None: they are read beside the origin."""
+        """Texts of the files that the scenario names, if it has them in memory; None: they are read beside the origin.
+
+        A dict of a study takes no scenario with files in memory.
+        """
         return self._core.files
 
     def run(self, *, check: bool = True) -> Run:
@@ -402,7 +405,7 @@ class Run:
         Raises:
             RuntimeError: if the model has no profile, the run ends before the instant, or no contact is closed then.
         """
-        return Table(self.scenario._core.profile(float(time)))
+        return Table(self.scenario._core.profile(time))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Run):

@@ -422,6 +422,10 @@ class Comparison(NamedTuple):
     curves: list[CurveDifference]
     gaps: list[Gap]
 
+    def _repr_html_(self) -> str:
+        caption = "; ".join(f"{gap.column} {gap.problem}" for gap in self.gaps) or "no gaps"
+        return _html.table(caption, CurveDifference._fields, self.curves)
+
 
 @explained
 def compare(
@@ -479,6 +483,11 @@ def _named_text(source: Source, name: str) -> tuple[str, Optional[str]]:
 def _plain(value: Any) -> Any:
     """Returns a study with the dict of a :class:`Scenario` in its place."""
     if isinstance(value, Scenario):
+        if value.files is not None:
+            raise ValueError(
+                f"the scenario has {', '.join(value.files)} in memory; expected files on disk, so write them, and make the "
+                "scenario anew with its text and their folder in origin"
+            )
         return value.to_dict()
     if isinstance(value, Mapping):
         return {key: _plain(entry) for key, entry in value.items()}

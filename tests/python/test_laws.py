@@ -125,6 +125,12 @@ def test_a_word_of_a_wrong_type_is_an_error_that_names_it():
         laws.semimech.force(1e9, 0.3, 1e7, 0.01, 1e-4, configuration=None)
 
 
+def test_integers_are_numbers_up_to_the_largest_float():
+    assert laws.hertz.force(10**9, np.float32(0.5), True) == laws.hertz.force(1e9, 0.5, 1.0)
+    with pytest.raises(OverflowError):
+        laws.hertz.force(10**400, 0.01, 1e-4)
+
+
 def test_masked_elements_are_nan():
     force = laws.hertz.force(1e9, 0.01, np.ma.array([1e-4, 2e-4], mask=[False, True]))
     assert_array_equal(force, [laws.hertz.force(1e9, 0.01, 1e-4), np.nan])

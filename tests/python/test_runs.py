@@ -578,6 +578,8 @@ def test_only_a_name_finds_a_column(die, wrong):
         (lambda: mg.parameters("die"), "scenario: expected Scenario, not 'die'"),
         (lambda: mg.Prepared("die", ["material.yield_stress"]), "scenario: expected Scenario, not 'die'"),
         (lambda: mg.Run.load(None), "folder: expected str"),
+        (lambda: mg.scenario("die").run().profile("x"), "time: expected float, not 'x'"),
+        (lambda: mg.scenario("die").run().plot(axes=3), "axes: expected axes of matplotlib, not 3"),
         (lambda: mg.Table.from_columns([1, 2]), "columns: expected arrays by name"),
         (lambda: mg.Scenario("die"), "no TOML text; Scenario.load reads files, and monograin.scenario has ready"),
     ],

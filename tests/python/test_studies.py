@@ -249,6 +249,7 @@ def test_a_run_does_not_differ_from_itself_and_does_from_another(die, tmp_path):
     assert same.gaps == []
     assert {curve.y for curve in same.curves} >= {"axial.force[N]", "event time[s]"}
     assert all(curve.linf == 0.0 and curve.coverage == 1.0 for curve in same.curves)
+    assert "axial.force[N]" in same._repr_html_()
     (force,) = mg.compare(run, softer, x="axial.displacement", y="axial.force").curves
     assert 0.001 < force.linf < 0.1
     run.save(tmp_path / "a")
@@ -349,6 +350,17 @@ def test_results_show_themselves_as_tables():
     assert "yield_stress = 4.5" in repr(fit)
     plan = mg.design(next((mg.scenario_folder() / "design").glob("*.toml")))
     assert "standard_error" in plan._repr_html_()
+
+
+def test_a_study_refuses_a_scenario_whose_files_are_in_memory(tmp_path):
+    mg.scenario("hollomon").run().save(tmp_path)
+    scenario = mg.Run.load(tmp_path).scenario
+    with pytest.raises(ValueError, match="hollomon-pressure.csv in memory; expected files on disk"):
+        mg.sweep({"scenario": scenario, "vary": {"output.points": {"values": [20, 30]}}}, tmp_path / "swept")
+    (tmp_path / "hollomon-pressure.csv").write_text(scenario.files["hollomon-pressure.csv"])
+    again = mg.Scenario(scenario.text, origin=tmp_path / "hollomon.toml", overrides=scenario.overrides)
+    assert again == scenario
+    assert len(mg.sweep({"scenario": again, "vary": {"output.points": {"values": [20, 30]}}}, tmp_path / "swept")) == 2
 
 
 def test_wrong_types_of_studies_are_sentences(die, tmp_path):
