@@ -37,7 +37,7 @@ class _Sheet(NamedTuple):
     panels: list[_Panel]
 
 
-class RunFigure(Figure):  # type: ignore[misc]
+class ShownFigure(Figure):  # type: ignore[misc]
     """A figure that a notebook shows, though pyplot does not manage it."""
 
     def _repr_png_(self) -> bytes:
@@ -72,12 +72,33 @@ def of_run(
     return figure
 
 
+def of_fit(fit: Table, axes: Optional[Axes]) -> Figure:
+    """Draws data, fit and confidence band; see :meth:`monograin.Calibration.plot`."""
+    x, y = (fit[name] for name in fit.columns[:2])
+    (place,) = _places(axes, 1)
+    place.plot(x, y, "o", color="0.5", markersize=3, markerfacecolor="none", label="data")
+    curves = fit["curve"] if "curve" in fit else np.zeros(len(fit))
+    for k, curve in enumerate(np.unique(curves)):
+        rows = curves == curve
+        place.plot(x[rows], fit["fit"][rows], color=_COLOURS[0], label="fit" if k == 0 else None)
+        place.fill_between(x[rows], fit["band_lower"][rows], fit["band_upper"][rows], color=_COLOURS[0], alpha=0.2)
+    place.set_xlabel(_with_unit(fit, fit.columns[0]))
+    place.set_ylabel(_with_unit(fit, fit.columns[1]))
+    place.legend(fontsize="small")
+    figure: Figure = place.figure
+    return figure
+
+
 def _places(axes: Union[Axes, Sequence[Axes], None], count: int) -> list[Axes]:
     """Returns axes for some panels: those that are given, or those of a new figure."""
     if axes is None:
         rows = (count + 1) // 2
-        figure = RunFigure(figsize=(8.0 if count > 1 else 5.0, 3.2 * rows), layout="constrained")
-        return [figure.add_subplot(rows, min(2, count), place + 1) for place in range(count)]
+        figure = ShownFigure(figsize=(8.0 if count > 1 else 5.0, 3.2 * rows), layout="constrained")
+        made = [figure.add_subplot(rows, min(2, count), place + 1) for place in range(count)]
+        for place in made:
+            # Numbers in metres would overlap.
+            place.ticklabel_format(scilimits=(-2, 5))
+        return made
     places = list(np.ravel(np.asarray(axes, dtype=object)))
     for place in places:
         if not hasattr(place, "plot"):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from . import _core, _html, _toml
 from ._core import Designed, Fitted
 from ._inputs import Named, explained, same
-from ._optional import DataFrame
+from ._optional import Axes, DataFrame, Figure
 from .runs import Path, Run, Scenario
 from .tables import Table
 
@@ -201,6 +201,20 @@ class Calibration(_Result):
     def info(self) -> dict[str, Any]:
         """Content of ``calibration.json``: parameters, statistics, minima, data."""
         return copy.deepcopy(self._info)
+
+    @explained
+    def plot(self, *, axes: Optional[Axes] = None) -> Figure:
+        """Draws the data, the fit and its confidence band, in SI units. A notebook shows the figure.
+
+        Args:
+            axes: axes of matplotlib to draw into; None: those of a new figure, which pyplot does not manage.
+
+        Raises:
+            ImportError: if matplotlib is not installed.
+        """
+        from . import _figure
+
+        return _figure.of_fit(self.fit, axes)
 
     def __repr__(self) -> str:
         values = ", ".join(f"{key} = {value:.5g}" for key, value in self.values.items())

@@ -343,6 +343,19 @@ def test_the_scenario_of_a_fit_runs_anywhere(tmp_path, monkeypatch):
     assert_allclose(force[loading], run["axial.force"][loading], rtol=1e-5, atol=1e-6 * run["axial.force"].max())
 
 
+def test_a_fit_is_drawn_through_its_data():
+    pytest.importorskip("matplotlib")
+    fit = mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml")
+    figure = fit.plot()
+    assert figure._repr_png_().startswith(b"\x89PNG")
+    (axes,) = figure.axes
+    data, curve = axes.lines
+    assert_array_equal(data.get_ydata(), fit.fit[fit.fit.columns[1]])
+    assert_array_equal(curve.get_ydata(), fit.fit["fit"])
+    assert axes.get_ylabel().endswith("[N]")
+    assert fit.plot(axes=axes) is figure and len(axes.lines) == 4
+
+
 def test_results_show_themselves_as_tables():
     fit = mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml")
     shown = fit._repr_html_()
