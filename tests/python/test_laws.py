@@ -164,7 +164,7 @@ def test_ctrl_c_ends_a_law(tmp_path):
         import numpy as np
         import monograin as mg
 
-        overlap = np.full(60_000_000, 1e-4)
+        overlap = np.broadcast_to([1e-4], 60_000_000)
         threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
         start = time.perf_counter()
         try:
@@ -174,7 +174,7 @@ def test_ctrl_c_ends_a_law(tmp_path):
         """
     done = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert 0.4 < float(done.stdout) < 2.0
+    assert 0.4 < float(done.stdout) < 2.5
 
 
 def test_a_module_of_laws_lists_its_laws_only():
