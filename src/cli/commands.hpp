@@ -34,6 +34,9 @@ class UsageError : public std::runtime_error {
 /// @throws UsageError if there is no such model; the message lists the models
 [[nodiscard]] const Model& model_named(const std::string& name);
 
+/// Prints what every law makes of a scenario's scene, and how far it is from finite elements. Returns the exit code.
+[[nodiscard]] int show_laws_for(const std::string& file);
+
 /// Runs the command that was named, which sets it; returns the exit code.
 using Action = std::function<int()>;
 

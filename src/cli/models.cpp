@@ -25,6 +25,7 @@ namespace {
 struct ModelsOptions {
   std::string name;
   std::string file;
+  std::string scene;
 };
 
 std::string to_text(const Range& range) {
@@ -136,6 +137,7 @@ int run_cite(const std::vector<std::string>& names) {
 }
 
 int run_models(const ModelsOptions& options) {
+  if (!options.scene.empty()) return show_laws_for(options.scene);
   const Model* model = options.name.empty() ? nullptr : &model_named(options.name);
   if (options.file.empty()) {
     if (model == nullptr)
@@ -168,6 +170,12 @@ void add_models_command(CLI::App& app, Action& action) {
   command->add_option("NAME", options->name, "Model to describe");
   command->add_option("--parameters", options->file, "Print the derived parameters of this scenario instead")
       ->type_name("FILE");
+  command
+      ->add_option("--for", options->scene,
+                   "Run this scenario under every law: which can, how far each is off finite elements, why others not")
+      ->type_name("FILE")
+      ->excludes("NAME")
+      ->excludes("--parameters");
   command->footer("Example: monograin models mdr");
   command->callback([options, &action] { action = [options] { return run_models(*options); }; });
 }

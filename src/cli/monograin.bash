@@ -7,7 +7,7 @@ _monograin() {
     return
   fi
   if [[ $previous == models ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$(monograin models 2>/dev/null | awk 'NF == 0 { exit } { print $1 }') --parameters" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "$(monograin models 2>/dev/null | awk 'NF == 0 { exit } { print $1 }') --parameters --for" -- "$current")
     return
   fi
   if [[ ${COMP_WORDS[1]} == cite && $current != -* ]]; then
@@ -21,7 +21,7 @@ _monograin() {
   case ${COMP_WORDS[1]} in
     run) options="--output --set --plot --quiet --help" ;;
     check) options="--set --help" ;;
-    models) options="--parameters --help" ;;
+    models) options="--parameters --for --help" ;;
     plot) options="--output --profile --x --y --unit --data --help" ;;
     atlas) options="--plots --output --list --help" ;;
     compare) options="--x --y --tol --help" ;;

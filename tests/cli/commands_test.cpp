@@ -214,6 +214,33 @@ TEST_F(Commands, CheckSaysNothingOfAGoodFile) {
   EXPECT_TRUE(outcome.out.empty() && outcome.err.empty()) << outcome.out << outcome.err;
 }
 
+TEST_F(Commands, ModelsForAScenarioSayWhichLawsCanRunItAndHowFarTheyAreOff) {
+  write_text(path("small.toml"), std::string(k_small) + "[mdr]\nstrict = true\n");
+  const auto before = files();
+  const Outcome outcome = monograin("models --for small.toml");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const auto line_of = [&](const std::string& law) {
+    const std::size_t begin = outcome.out.find("| " + law + " ");
+    return begin == std::string::npos ? "" : outcome.out.substr(begin, outcome.out.find('\n', begin) - begin);
+  };
+  for (const char* law : {"mdr", "cel"}) {
+    EXPECT_NE(line_of(law).find("| runs "), std::string::npos) << outcome.out;
+    EXPECT_NE(line_of(law).find(" % to 0.25 R0, E/Y = 50 |"), std::string::npos) << outcome.out;
+  }
+  EXPECT_NE(line_of("hertz").find("rubber"), std::string::npos) << outcome.out;
+  EXPECT_NE(line_of("similarity").find("| cannot "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\nsimilarity: key 'hardening_exponent' is missing in [material]"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(outcome.out.find("material-point"), std::string::npos) << "has no walls";
+  EXPECT_EQ(files(), before) << "nothing is written";
+}
+
+TEST_F(Commands, ModelsForAScenarioWithoutWallsAreRefused) {
+  const Outcome outcome = monograin("models --for " MONOGRAIN_SOURCE_DIR "/scenarios/packing.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("model 'packing' has no walls"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Commands, ModelsListsAndDescribes) {
   EXPECT_NE(monograin("models").out.find("mdr"), std::string::npos);
   const Outcome mdr = monograin("models mdr");
