@@ -65,13 +65,16 @@ std::vector<CheckedScenario> chosen_scenes(const BenchOptions& options, const st
   return chosen;
 }
 
-void check_integrators(const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
+/// Integrators by their present names.
+std::vector<std::string> checked_integrators(std::vector<std::string> names) {
+  for (std::string& name : names) {
+    name = integrators::present_name(name);
     if (name == integrators::k_auto || std::ranges::find(integrator_names(), name) != integrator_names().end())
       continue;
     throw UsageError(fmt::format("no integrator is called '{}'; expected auto or one of {}", name,
                                  fmt::join(integrator_names(), ", ")));
   }
+  return names;
 }
 
 constexpr const char* k_list = "scenarios/bench/scenes.toml";
@@ -94,8 +97,8 @@ int bench(const BenchOptions& named) {
     }
     return k_success;
   }
-  check_integrators(options.integrators);
-  const BenchSettings settings{.integrators = options.integrators, .tolerances = options.tolerances};
+  const BenchSettings settings{.integrators = checked_integrators(options.integrators),
+                               .tolerances = options.tolerances};
   const bool needs_list = options.scenes.empty() || std::ranges::any_of(options.scenes, [](const std::string& name) {
                             return fs::path(name).extension() != ".toml";
                           });
@@ -115,7 +118,7 @@ int bench(const BenchOptions& named) {
       const std::size_t done = scenes.size();
       scenes.push_back(measure_scene(scenario, settings, [&] { bar.show(done, scenarios.size()); }));
       if (!options.profiles) continue;
-      std::vector<std::string> integrators = options.integrators;
+      std::vector<std::string> integrators = settings.integrators;
       if (integrators.empty()) integrators = {integrators::k_auto, integrators::k_cvode_bdf, integrators::k_ida};
       for (const std::string& name : integrators) profiles.push_back(profile_scene(scenario, name));
     }

@@ -90,7 +90,7 @@ const std::string& switching_name() {
 std::span<const std::string_view> integrator_names() noexcept {
   static const auto k_names = [] {
     std::array<std::string_view, k_of_explicit_form.size() + 3> names{integrators::k_direct, integrators::k_ida,
-                                                                      integrators::k_explicit};
+                                                                      integrators::k_forward_euler};
     std::ranges::transform(k_of_explicit_form, names.begin() + 3, &NamedMethod::name);
     return names;
   }();
@@ -99,7 +99,7 @@ std::span<const std::string_view> integrator_names() noexcept {
 
 bool suits_stiff_equations(std::string_view name) noexcept {
   const auto found = std::ranges::find(k_of_explicit_form, name, &NamedMethod::name);
-  return found == k_of_explicit_form.end() ? name != integrators::k_explicit : found->suits_stiff;
+  return found == k_of_explicit_form.end() ? name != integrators::k_forward_euler : found->suits_stiff;
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, GuardSet& guard_set,
@@ -107,7 +107,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
                                             ForwardSensitivities* sensitivities) {
   if (name == integrators::k_direct && !system.is_solvable()) throw std::logic_error("the system has no direct form");
   if (name == integrators::k_direct) return make_direct(system, asked.rtol, guard_set, rows);
-  if (name == integrators::k_explicit) return make_fixed_step(system, guard_set, asked);
+  if (name == integrators::k_forward_euler) return make_fixed_step(system, guard_set, asked);
   const double gain = system.error_gain();
   const double rtol = std::max(asked.rtol / gain, std::min(asked.rtol, k_least_rtol));
   // The absolute tolerance need not be below a tenth of the relative one: equations without rates have round-off.

@@ -1,4 +1,5 @@
-/// Names of the integrators that a scenario may select, and their default tolerances. No other file spells them.
+/// Names of the integrators that a scenario may select, and their default tolerances. No other file of the program
+/// spells them.
 #pragma once
 
 #include <array>
@@ -20,7 +21,7 @@ inline constexpr const char* k_odeint_rosenbrock4 = "odeint-rosenbrock4";
 inline constexpr const char* k_gsl_rk8pd = "gsl-rk8pd";
 inline constexpr const char* k_gsl_msadams = "gsl-msadams";
 inline constexpr const char* k_gsl_msbdf = "gsl-msbdf";
-inline constexpr const char* k_explicit = "explicit";  ///< forward Euler
+inline constexpr const char* k_forward_euler = "forward-euler";
 
 /// All integrators, in the order of their lists for users.
 inline constexpr std::array<std::string_view, 15> k_all{k_auto,
@@ -37,7 +38,14 @@ inline constexpr std::array<std::string_view, 15> k_all{k_auto,
                                                         k_gsl_rk8pd,
                                                         k_gsl_msadams,
                                                         k_gsl_msbdf,
-                                                        k_explicit};
+                                                        k_forward_euler};
+
+/// Former name of forward Euler, which files may have.
+inline constexpr const char* k_former_forward_euler = "explicit";
+/// The present name of an integrator.
+[[nodiscard]] constexpr std::string_view present_name(std::string_view name) noexcept {
+  return name == k_former_forward_euler ? k_forward_euler : name;
+}
 
 inline constexpr double k_default_rtol = 1e-8;
 inline constexpr double k_default_atol = 1e-12;  ///< relative to each unknown's own scale

@@ -53,6 +53,9 @@ struct KeySpec {
   std::span<const QuantityKey> columns{};  ///< of a file that is not a curve of two columns
 };
 
+  bool may_be_table = false;               ///< of a quantity: a table may stand in its place, which the caller checks
+  /// Former names of choices with the present ones.
+  std::vector<std::pair<std::string_view, std::string_view>> renamed{};
 /// A key of the language that does not belong where it was found, with the reason.
 struct ForeignKey {
   std::string_view name;

@@ -86,6 +86,7 @@ json choice(const KeySpec& spec) {
 json direction() {
   json component = bounds({.lower = -k_greatest_normal, .upper = k_greatest_normal});
   const json points_somewhere{{"anyOf", {{{"minimum", k_least_normal}}, {{"maximum", -k_least_normal}}}}};
+  for (const auto& [former, present] : spec.renamed) words.push_back(former);
   return {{"type", "array"}, {"items", component}, {"minItems", 3}, {"maxItems", 3}, {"contains", points_somewhere}};
 }
 

@@ -192,7 +192,8 @@ std::optional<Section::Value> Section::read_text(const KeySpec& spec, const toml
 std::optional<Section::Value> Section::read_choice(const KeySpec& spec, const toml::node& node) {
   const std::optional<std::string> written = as_word(node);
   if (!written) return unexpected(spec, node);
-  const std::string& word = *written;
+  const auto former = std::ranges::find(spec.renamed, *written, &std::pair<std::string_view, std::string_view>::first);
+  const std::string word = former == spec.renamed.end() ? *written : std::string(former->second);
   if (!node.is_string() && std::ranges::find(spec.choices, word) == spec.choices.end()) return unexpected(spec, node);
   // Without a model, any event is accepted.
   if (spec.choices.empty() || std::ranges::find(spec.choices, word) != spec.choices.end()) return word;

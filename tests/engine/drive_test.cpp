@@ -41,10 +41,10 @@ std::vector<std::pair<double, int>> rows(const TestRun& result) {
 using Rows = std::vector<std::pair<double, int>>;
 
 /// Tolerance of comparisons; larger for forward Euler, whose rtol is its step.
-double accuracy(std::string_view integrator) { return integrator == "explicit" ? 1e-4 : 1e-7; }
+double accuracy(std::string_view integrator) { return integrator == "forward-euler" ? 1e-4 : 1e-7; }
 
 TestRun run_with(const CheckedScenario& scenario, std::string_view integrator) {
-  return run(scenario, integrator, relative(integrator == "explicit" ? 1e-5 : 1e-8));
+  return run(scenario, integrator, relative(integrator == "forward-euler" ? 1e-5 : 1e-8));
 }
 
 /// Warnings about steps of the program.
@@ -465,11 +465,11 @@ TEST(Events, ThatOnlyMarkAnInstantBringNoConditionWithThem) {
     // Within the tolerance of an integrator, but not met.
     constexpr double k_beyond = 1e-10;
     scene.channels[0].program[0].until.push_back({.quantity = force, .value = 0.4 + k_beyond, .event = {}});
-    const TestRun result{
-        {},
-        record_run(scene, integrator, relative(integrator == "explicit" ? 1e-5 : 1e-8), {.points = 1, .times = {}})};
+    const TestRun result{{},
+                         record_run(scene, integrator, relative(integrator == "forward-euler" ? 1e-5 : 1e-8),
+                                    {.points = 1, .times = {}})};
     EXPECT_EQ(result.events(), (std::vector<std::string>{"mark", "until-met"})) << integrator;
-    if (integrator == "explicit") continue;
+    if (integrator == "forward-euler") continue;
     EXPECT_NEAR(result.time_of("until-met") - result.time_of("mark"), k_beyond, 1e-3 * k_beyond) << integrator;
   }
 }

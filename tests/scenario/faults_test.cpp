@@ -308,7 +308,7 @@ const std::vector<FaultRow> k_rows{
              "duration = 1\n[numerics]\nintegrator = \"cvode-bfd\"",
              {"die.toml:15:14: integrator = \"cvode-bfd\": expected one of auto, direct, cvode-bdf, cvode-adams, ida, "
               "arkode-erk, arkode-dirk, odeint-dopri5, odeint-fehlberg78, odeint-bulirsch-stoer, "
-              "odeint-rosenbrock4, gsl-rk8pd, gsl-msadams, gsl-msbdf, explicit; did you mean 'cvode-bdf'?"}},
+              "odeint-rosenbrock4, gsl-rk8pd, gsl-msadams, gsl-msbdf, forward-euler; did you mean 'cvode-bdf'?"}},
     FaultRow{"RtolTooSmall",
              13,
              "duration = 1\n[numerics]\nrtol = 1e-15",

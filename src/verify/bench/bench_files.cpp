@@ -42,7 +42,7 @@ struct Line {
 constexpr std::array k_lines{
     Line{integrators::k_direct, 0, 0, ChartSeries::Style::points},
     Line{integrators::k_auto, 0, 1, ChartSeries::Style::points},
-    Line{integrators::k_explicit, 0, 5, ChartSeries::Style::dotted},
+    Line{integrators::k_forward_euler, 0, 5, ChartSeries::Style::dotted},
     Line{integrators::k_ida, 0, 2, ChartSeries::Style::dotted},
     Line{integrators::k_cvode_adams, 1, 0, ChartSeries::Style::solid},
     Line{integrators::k_cvode_bdf, 1, 1, ChartSeries::Style::solid},
@@ -502,7 +502,7 @@ std::vector<fs::path> redraw_bench(const fs::path& csv, const fs::path& folder) 
       found->name = name;
     }
     BenchPoint& point = found->points.emplace_back();
-    point.integrator = table.word(row, integrator);
+    point.integrator = integrators::present_name(table.word(row, integrator));
     point.rtol = rtol[row];
     point.curve_error = curve_error[row];
     point.event_error = event_error[row];

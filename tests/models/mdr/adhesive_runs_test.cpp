@@ -68,7 +68,7 @@ std::vector<double> event_column(const TestRun& result, std::string_view column)
 
 TEST(MdrForceExtremum, IsLocatedAlikeByEveryIntegrator) {
   for (const std::string_view integrator : integrator_names()) {
-    const bool is_fixed_step = integrator == "explicit";
+    const bool is_fixed_step = integrator == "forward-euler";
     const TestRun result = run(jkr(path({0.005, -0.01})), integrator, relative(is_fixed_step ? 1e-5 : 1e-8));
     EXPECT_EQ(result.events(),
               (Words{"axial:load-reversal", "axial:stick", "axial:peel", "axial:force-extremum", "axial:pull-off"}))
@@ -101,7 +101,7 @@ TEST(MdrForceExtremum, IsNoneWhereTheForceStays) {
   // One program holds between the greatest tension and pull-off, the other drives back from there.
   const std::vector<Step> held{ramp(0.005), ramp(-0.99 * depth), hold(), hold()};
   for (const std::string_view integrator : integrator_names()) {
-    if (integrator == "explicit") continue;
+    if (integrator == "forward-euler") continue;
     const TestRun result = run(jkr(held), integrator);
     EXPECT_EQ(result.events(),
               (Words{"axial:load-reversal", "axial:stick", "axial:peel", "axial:force-extremum", "axial:stick"}))

@@ -479,7 +479,7 @@ TEST(PlasticRuns, HoldWhatAConditionHasLedTo) {
             {until(ramp(0.3), Quantity::force, 1.7), force_ramp(1.7), until(force_ramp(3.0), Quantity::force, 1.9),
              force_ramp(1.9), until(force_ramp(3.0), Quantity::displacement, 0.2345), ramp(0.2345)});
   for (const std::string_view integrator : integrator_names()) {
-    if (integrator == "explicit") continue;  // its steps lead beyond
+    if (integrator == "forward-euler") continue;  // its steps lead beyond
     for (const double scale : {0.5, 0.9, 1.0, 1.1}) {
       CheckedScenario scenario = by_force;
       for (Step& step : scenario.loading.steps) {

@@ -203,7 +203,7 @@ class SceneCheck {
     // Every comparison would find these violations again.
     if (!verdict_.violations.empty()) return;
     // The scheme without error control has no tolerance, but its copies take the same steps.
-    if (run->integrator.used == integrators::k_explicit) {
+    if (run->integrator.used == integrators::k_forward_euler) {
       reference_ = run;
       compares_curves_ = false;
       tolerance_ = own_tolerance(*run);
@@ -258,7 +258,7 @@ class SceneCheck {
     for (std::uint64_t sample = 0; sample < k_rotations; ++sample) {
       if (needs_all || (kind == 2 && which % k_rotations == sample)) check_turned(run, sample);
     }
-    if (run.integrator.used == integrators::k_explicit) return;
+    if (run.integrator.used == integrators::k_forward_euler) return;
     if (needs_all || kind == 4) check_carried(run, which);
     const bool is_direct = run.integrator.is_direct();
     if ((needs_all || (kind == 3 && which % 2 == 0)) && run.integrator.used != integrators::k_ida)

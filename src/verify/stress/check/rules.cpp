@@ -137,7 +137,7 @@ void check_numbers(const Run& run, const CheckedRun& checked, Violations& found)
 
 void check_forces(const Run& run, Violations& found) {
   // A fixed step does not end where a contact opens.
-  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_explicit) return;
+  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_forward_euler) return;
   const Table& table = run.record.history;
   const double scale = largest_of_kind(table, "force");
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
@@ -153,7 +153,7 @@ void check_forces(const Run& run, Violations& found) {
 
 /// Checks that a contact which bears keeps its overlap where a step ends and the next one begins.
 void check_step_starts(const Run& run, Violations& found) {
-  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_explicit) return;
+  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_forward_euler) return;
   const Table& table = run.record.history;
   const double most =
       std::max(own_tolerance(run), k_jump) * largest_of_kind(table, "overlap") + k_touch * run.scenario.radius;
@@ -313,7 +313,7 @@ void check_energy(const Run& run, Violations& found) {
   const double scale = std::max(largest_magnitude(table, *work), largest_magnitude(table, *stored));
   if (scale == 0.0) return;
   // Fixed steps control no error.
-  if (run.integrator.used == integrators::k_explicit) return;
+  if (run.integrator.used == integrators::k_forward_euler) return;
   const bool is_conservative = is_elastic(run.scenario);
   // Integrated runs of a conservative law are compared with the direct form instead, which allows for errors that the
   // scene magnifies.
@@ -487,7 +487,7 @@ std::vector<Violation> check_run(const Run& run) {
   check_events(run, found);
   check_work(run, found);
   // Fixed steps control no error: the rules below do not hold for them.
-  if (run.integrator.used == integrators::k_explicit) return found;
+  if (run.integrator.used == integrators::k_forward_euler) return found;
   check_program(run, found);
   if (const auto check = find_model(run.scenario.model)->check) check(checked, found);
   return found;

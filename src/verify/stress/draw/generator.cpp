@@ -224,7 +224,7 @@ StressScene draw_scene(Dice& dice, const fs::path& tables, const DrawnModels& mo
   scene.integrator = draw_integrator(dice, has_direct_form);
   scene.rtol = dice.happens(0.5) ? 1e-8 : dice.log_uniform(1e-13, 1e-2);
   // Fixed steps are as many as 1/rtol.
-  if (scene.integrator == integrators::k_explicit) scene.rtol = dice.log_uniform(1e-3, 1e-2);
+  if (scene.integrator == integrators::k_forward_euler) scene.rtol = dice.log_uniform(1e-3, 1e-2);
   // If the reference has to be integrated, many cycles at a fine tolerance take minutes.
   if (!has_direct_form && scene.cycles > 1) {
     scene.cycles = std::min(scene.cycles, k_most_cycles / 5);
