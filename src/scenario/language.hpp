@@ -33,6 +33,7 @@ struct KeySpec {
     table,
     tables,  ///< not empty
   };
+    any,     ///< a value that is not checked
   using Default = std::variant<std::monostate, bool, double, std::string_view>;
 
   std::string_view name;

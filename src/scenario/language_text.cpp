@@ -32,6 +32,7 @@ std::string example_of(const KeySpec& spec) {
     case Kind::texts:
     case Kind::table:
     case Kind::tables:
+    case Kind::any:
       break;
   }
   return "...";
@@ -85,6 +86,8 @@ std::string expectation(const KeySpec& spec) {
       return fmt::format("a table, written {}", example_line(spec));
     case Kind::tables:
       return fmt::format("an array of tables, written {}", example_line(spec));
+    case Kind::any:
+      break;
   }
   return {};
 }

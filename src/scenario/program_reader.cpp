@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <utility>
+
+#include "scenario/words.hpp"
 
 namespace monograin {
 namespace {
@@ -64,9 +67,18 @@ std::vector<Step> ProgramReader::read_step(const Section::Origin& table, int dep
   return {read_plain_step(section, *form)};
 }
 
+/// The form that the keys of a step show, else the one whose key is misspelt there.
 const StepForm* ProgramReader::form_of(const toml::table& table) const {
-  const auto found =
-      std::ranges::find_if(language_.steps, [&](const StepForm& form) { return table.contains(form.key); });
+  const auto is_misspelt_in = [&](const StepForm& form) {
+    const std::vector<std::string_view> names = names_of(form.keys);
+    return std::ranges::any_of(table, [&](const auto& entry) {
+      const std::string_view key = entry.first.str();
+      return find_key(form.keys, key) == nullptr && reason_of(form.foreign, key).empty() &&
+             nearest_word(key, names) == form.key;
+    });
+  };
+  auto found = std::ranges::find_if(language_.steps, [&](const StepForm& form) { return table.contains(form.key); });
+  if (found == language_.steps.end()) found = std::ranges::find_if(language_.steps, is_misspelt_in);
   return found == language_.steps.end() ? nullptr : &*found;
 }
 
@@ -75,14 +87,21 @@ void ProgramReader::report_formless(const Section::Origin& table) {
   std::vector<std::string_view> forms;
   for (const StepForm& form : language_.steps) {
     forms.push_back(form.key);
-    for (const KeySpec& spec : form.keys) {
-      if (find_key(all_keys, spec.name) == nullptr) all_keys.push_back(spec);
+    for (KeySpec spec : form.keys) {
+      spec.is_required = false;
+      const auto known = std::ranges::find(all_keys, spec.name, &KeySpec::name);
+      if (known == all_keys.end()) {
+        all_keys.push_back(std::move(spec));
+      } else if (known->dimension != spec.dimension) {
+        known->kind = KeySpec::Kind::any;
+      }
     }
   }
-  const std::size_t faults_before = reading_.faults.size();
-  check_names(reading_, *table.table, table.place, table.label, all_keys, language_.foreign_step_keys);
-  // The key of the form is most likely misspelt, which has just been reported.
-  if (reading_.faults.size() != faults_before) return;
+  const Section section(reading_, table, all_keys, language_.foreign_step_keys);
+  if (section.has("until")) static_cast<void>(read_until(section));
+  const auto is_unknown = [&](const auto& entry) { return find_key(all_keys, entry.first.str()) == nullptr; };
+  // Such a key has been reported, and is most likely what the step is to do.
+  if (std::ranges::any_of(*table.table, is_unknown)) return;
   reading_.faults.add(table.place,
                       fmt::format("the step has nothing to do; expected exactly one of {}", fmt::join(forms, ", ")));
 }

@@ -132,6 +132,8 @@ json kind_schema(const KeySpec& spec, const json& content) {
 
 json default_json(const KeySpec& spec) {
   return std::visit(
+    case Kind::any:
+      break;
       [](const auto& value) -> json {
         if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
           return nullptr;

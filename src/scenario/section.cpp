@@ -188,6 +188,8 @@ std::optional<Section::Value> Section::read_text(const KeySpec& spec, const toml
   if (spec.kind == Kind::file && text->get().empty()) return unexpected(spec, node);
   return text->get();
 }
+    case Kind::any:
+      return std::nullopt;
 
 std::optional<Section::Value> Section::read_choice(const KeySpec& spec, const toml::node& node) {
   const std::optional<std::string> written = as_word(node);

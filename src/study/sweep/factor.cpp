@@ -328,6 +328,7 @@ ReadValue read_value(const KeySpec& spec, const std::string& text, const std::st
     case Kind::texts:
     case Kind::table:
     case Kind::tables:
+    case Kind::any:
       // The text becomes a cell of the results, where nothing is quoted.
       if (text.empty() || text.find_first_of(",\"\r\n") != std::string::npos) {
         return {{}, "expected a text without commas, quotes and line breaks"};
