@@ -55,6 +55,7 @@ DIMENSIONS = {
     "rad": "angle",
     "1/s": "strain rate",
     "Pa/s": "stress rate",
+    "Hz": "frequency",
 }
 
 # Words of plots/laws-fe.csv that are models.
@@ -63,7 +64,8 @@ MODEL_WORDS = ("hertz", "mdr", "cel", "similarity", "semimech", "hardening", "no
 # Keys in the order in which a scenario file is written.
 ORDER = ("title", "model", "particle", "material", "loading", "output", "numerics",
          "sensitivities", "configuration", "centre", "angle",
-         "oblique_walls", "name", "normal", "gap", "fixed", "wall", "duration", "rate", "until", "steps", "integrator",
+         "oblique_walls", "name", "normal", "gap", "fixed", "wall", "table", "time", "value", "sine", "mean", "amplitude",
+         "frequency", "cycles", "duration", "rate", "until", "steps", "integrator",
          "rtol", "atol")
 
 # Meaning of each column; a column of a contact class stands under the name after the class.
@@ -206,6 +208,11 @@ def range_of(schema):
     return f"{'(' if open_left else '['}{number(lower)}, {number(upper)}{')' if open_right else ']'}"
 
 
+def course_of(schema):
+    """Tables that may stand for a quantity: values over time, a sine."""
+    return next((part["oneOf"] for part in schema["anyOf"] if "oneOf" in part), [])
+
+
 def accepts(schema):
     """Describes the values that a key takes."""
     if "allOf" in schema and len(schema["allOf"]) == 1:
@@ -228,7 +235,8 @@ def accepts(schema):
         return f"a list: {accepts(items)}"
     units = units_of(schema)
     if units:
-        return f"{DIMENSIONS[si_unit(units)]} [{si_unit(units)}]"
+        or_table = " or a table" if course_of(schema) else ""
+        return f"{DIMENSIONS[si_unit(units)]} [{si_unit(units)}]{or_table}"
     if "anyOf" in schema:
         parts = [accepts(part) for part in schema["anyOf"]]
         return " or ".join(dict.fromkeys(parts))
@@ -315,6 +323,11 @@ def write_language(schema):
     text += "\n### `[[loading.steps]]`\n\nA step has one of these forms, identified by its first key.\n"
     for key, form in steps_of(definitions["mdr-step"]):
         text += f"\n`{key}`\n\n" + key_table(form["properties"], form["required"], (), (key, *ORDER))
+    text += "\n### A table or a sine in the place of a target\n\nShown for a displacement; a force takes the same keys.\n"
+    of_table, of_sine = course_of(dict(steps_of(definitions["mdr-step"]))["displacement"]["properties"]["displacement"])
+    sine = of_sine["properties"]["sine"]
+    for head, form in (("{ table, time, value }", of_table), ("{ sine = { ... } }", sine)):
+        text += f"\n`displacement = {head}`\n\n" + key_table(form["properties"], form["required"], (), ORDER)
     text += "\n### `until`\n\nOne or several conditions; the first that is met ends the step.\n\n"
     conditions = dict(until_of(definitions["mdr-step"]))
     conditions["event"] = {"type": "string", "description": "name of an [event](events.md) of the model"}

@@ -39,7 +39,8 @@ enum class Dimension {
   force_rate,
   angle,
   strain_rate,  ///< rate of a strain or of another pure number
-  stress_rate
+  stress_rate,
+  frequency
 };
 
 /// Interval of admissible values. It contains its bounds unless they are marked open.

@@ -41,6 +41,7 @@ struct Until {
   Quantity quantity = Quantity::force;
   double value = 0.0;   ///< [SI]
   std::string event{};  ///< name of the event to wait for; empty: wait for the quantity
+  std::string wall{};   ///< class or wall whose quantity counts; empty: that of the step
 
   [[nodiscard]] bool is_event() const noexcept { return !event.empty(); }
   /// True if the condition waits for this quantity to reach its value.

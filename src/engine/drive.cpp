@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -90,27 +91,45 @@ class Drive {
     system_.start(y_);
     follow([](ForwardSensitivities& s) { s.start(); });
     std::vector<Event> log;
+    bool is_met = false;
     for (std::size_t step = 0; step < scene_.step_count(); ++step) {
-      plan_ = plan_step(scene_, step, held_, guard_set_, xi_, y_);
-      clock_ = {.step = step, .start = clock_.time(xi_), .duration = plan_.duration};
-      xi_ = 0.0;
-      begin_step(log);
+      // A condition ends all that is left of a table or a sine.
+      if (is_met && !leg(step).is_first()) continue;
+      begin_step(step, log);
       // The rows before this corner are recorded already; the row after it belongs to the step that begins.
-      if (step > 0)
-        rows_.close_instant(0.0, y_, log);
-      else
+      const bool is_instant = plan_.leg.is_corner || !log.empty();
+      if (!plan_.leg.is_corner) rows_.pass_joint(is_instant);
+      if (step == 0)
         rows_.write_first(y_, log);
-      const bool is_met = integrate_step(log);
-      if (!is_met) demands_.note_conditions(plan_, clock_, xi_, y_);
-      demands_.note_forces(plan_, clock_, xi_);
-      rows_.end_step(xi_);
-      rows_.open_instant(xi_, y_);
-      log.clear();
-      if (is_met) log.push_back({"until-met"});
-      log.push_back({"step-end"});
-      for (std::size_t c = 0; c < held_.size(); ++c) held_[c] = ramp_after(plan_, system_, static_cast<int>(c), xi_);
+      else if (is_instant)
+        rows_.close_instant(0.0, y_, log);
+      is_met = integrate_step(log);
+      end_step(is_met, log);
     }
     rows_.close_instant(xi_, y_, log);
+  }
+
+  [[nodiscard]] const Leg& leg(std::size_t step) const { return scene_.longest_program()[step].leg; }
+
+  /// Records the end of a leg, and of the step if it is its last one.
+  /// @param log  takes the events there
+  void end_step(bool is_met, std::vector<Event>& log) {
+    const bool is_over = is_met || plan_.leg.is_last();
+    if (!is_met && is_over) demands_.note_conditions(plan_, clock_, xi_, y_);
+    demands_.note_forces(plan_, clock_, xi_);
+    rows_.end_step(xi_);
+    if (is_over || leg(clock_.step + 1).is_corner)
+      rows_.open_instant(xi_, y_);
+    else
+      rows_.reach_joint(xi_, y_);
+    log.clear();
+    if (is_met) log.push_back({"until-met"});
+    if (is_over) log.push_back({"step-end"});
+    hold_what_is_reached();
+  }
+
+  void hold_what_is_reached() {
+    for (std::size_t c = 0; c < held_.size(); ++c) held_[c] = ramp_after(plan_, system_, static_cast<int>(c), xi_);
   }
 
   /// Puts the limit that stops the run into the result, with the contact class if the limit belongs to one.
@@ -147,7 +166,13 @@ class Drive {
     if (sensitivities_ != nullptr && sensitivities_->is_active()) action(*sensitivities_);
   }
 
-  void begin_step(std::vector<Event>& log) {
+  void begin_step(std::size_t step, std::vector<Event>& log) {
+    plan_ = plan_step(scene_, step, held_, guard_set_, xi_, y_);
+    clock_ = {.step = step,
+              .start = clock_.time(xi_),
+              .duration = plan_.duration,
+              .number = clock_.number + (step > 0 && plan_.leg.is_first() ? 1U : 0U)};
+    xi_ = 0.0;
     const std::size_t logged = log.size();
     system_.begin_step(plan_.ramps, y_, log);
     follow([&](ForwardSensitivities& s) { s.begin_step(clock_.step, plan_, std::span(log).subspan(logged)); });
@@ -176,13 +201,15 @@ class Drive {
 
   /// Output points divide the step up to its end. If that may come early, the step runs once without recording.
   void place_rows() {
-    Rehearsal rehearsal;
-    if (may_end_early() && rows_.divide_step()) rehearsal = rehearse();
-    rows_.place(rehearsal.end, may_end_early() && !rehearsal.stops);
+    if (plan_.leg.is_first()) {
+      rehearsal_ = {};
+      if (may_end_early() && rows_.divide_step()) rehearsal_ = rehearse();
+    }
+    rows_.place(plan_.leg, rehearsal_.end, may_end_early() && !rehearsal_.stops);
   }
 
   struct Rehearsal {
-    double end = 1.0;    ///< step coordinate where the step ends, by a condition or because the run cannot go on
+    double end = 1.0;    ///< share of the step's time where the step ends, by a condition or as the run cannot go on
     bool stops = false;  ///< the run cannot go on
   };
   /// Runs the step that has begun without recording it, then restores its beginning.
@@ -190,11 +217,14 @@ class Drive {
     const std::function<void()> restore = system_.checkpoint();
     const std::vector<double> state = y_;
     const long event_count = event_count_;
+    const StepPlan plan = plan_;
+    const StepClock clock = clock_;
+    const std::vector<Ramp> held = held_;
     rows_.pause();
     if (sensitivities_ != nullptr) sensitivities_->set_active(false);
     Rehearsal result{.stops = true};
     try {
-      static_cast<void>(integrate());
+      integrate_legs();
       result.stops = false;
     } catch (const Stop&) {  // the recorded run will end here again
     } catch (const std::domain_error&) {
@@ -203,12 +233,28 @@ class Drive {
     rows_.resume();
     if (sensitivities_ != nullptr) sensitivities_->set_active(true);
     restore();
-    result.end = xi_ > rows_.least_length() ? xi_ : 0.0;
+    const double end = std::lerp(plan_.leg.begin, plan_.leg.end, xi_);
+    result.end = end > rows_.least_length() ? end : 0.0;
     xi_ = 0.0;
+    plan_ = plan;
+    clock_ = clock;
+    held_ = held;
     y_ = state;
     event_count_ = event_count;
     guard_set_.begin_step(plan_.conditions, 0.0, y_);
     return result;
+  }
+
+  /// Integrates the leg that has begun, and those that follow in its step, without recording.
+  void integrate_legs() {
+    bool is_met = integrate();
+    while (!is_met && !plan_.leg.is_last()) {
+      hold_what_is_reached();
+      std::vector<Event> log;
+      begin_step(clock_.step + 1, log);
+      guard_set_.begin_step(plan_.conditions, 0.0, y_);
+      is_met = guard_set_.held_at_begin() || has_ending_event(log) || integrate();
+    }
   }
 
   /// Integrates from the present state to where the step ends. Returns whether a condition ended it.
@@ -372,7 +418,8 @@ class Drive {
   std::vector<double> trial_;  ///< state that replaces y_ if it can be computed
   std::vector<Ramp> held_;     ///< what each channel keeps when a step says nothing
   StepPlan plan_;
-  double xi_ = 0.0;  ///< present step coordinate
+  Rehearsal rehearsal_;  ///< of the present step
+  double xi_ = 0.0;      ///< present step coordinate
   long event_count_ = 0;
 };
 

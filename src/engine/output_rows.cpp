@@ -30,14 +30,17 @@ double OutputRows::least_length() const noexcept { return output_.points * k_sam
 
 void OutputRows::begin_step() { points_.clear(); }
 
-void OutputRows::place(double end, bool may_end_elsewhere) {
+void OutputRows::place(const Leg& leg, double end, bool may_end_elsewhere) {
   next_ = 0;
   const int first = end > 0.0 ? 1 : output_.points;
   for (int j = first; output_.times.empty() && j <= output_.points; ++j) {
-    const double xi = end * (static_cast<double>(j) / output_.points);
+    const double share = end * (static_cast<double>(j) / output_.points);
+    const bool is_before = !leg.is_first() && share <= leg.begin + k_same_instant;
+    if (is_before || share > leg.end + k_same_instant) continue;
+    const double xi = std::min(1.0, (share - leg.begin) / (leg.end - leg.begin));
     points_.push_back({xi, clock_.time(xi)});
+    if (may_end_elsewhere && j == output_.points) points_.back().xi = k_at_end;
   }
-  if (may_end_elsewhere && !points_.empty()) points_.back().xi = k_at_end;
   for (const double instant : output_.times) {
     if (clock_.duration == 0.0) break;
     const double xi = clock_.step_coordinate(instant);
@@ -99,9 +102,18 @@ void OutputRows::write_first(std::span<const double> y, std::span<const Event> e
 
 void OutputRows::open_instant(double xi, std::span<const double> y) {
   if (is_paused_) return;
+  reach_joint(xi, y);
+  pass_joint(true);
+}
+
+void OutputRows::reach_joint(double xi, std::span<const double> y) {
   observe(xi, y);
-  sink_.append(RowSide::before);
-  if (next_ < points_.size() && points_[next_].xi <= xi + k_same_instant) {
+  reached_ = xi;
+}
+
+void OutputRows::pass_joint(bool has_events) {
+  if (has_events) sink_.append(RowSide::before);
+  if (next_ < points_.size() && points_[next_].xi <= reached_ + k_same_instant) {
     ++next_;
     sink_.append(RowSide::output);
   }

@@ -29,9 +29,10 @@ class OutputRows {
 
   /// Forgets the output points of the last step.
   void begin_step();
-  /// Places the output points of a step that ends at a step coordinate.
+  /// Places the output points of a step that lie in one of its legs.
+  /// @param end                share of the step's time at which the step ends
   /// @param may_end_elsewhere  the last point is wherever the step will end
-  void place(double end, bool may_end_elsewhere);
+  void place(const Leg& leg, double end, bool may_end_elsewhere);
   /// Puts that last point where the step has ended.
   void end_step(double xi);
 
@@ -50,6 +51,11 @@ class OutputRows {
   void write_first(std::span<const double> y, std::span<const Event> events);
   /// Writes the row just before an event or corner, and the row of an output point that falls on it.
   void open_instant(double xi, std::span<const double> y);
+  /// Notes the state where one leg of a curve ends and the next one begins. That is no corner of the program.
+  void reach_joint(double xi, std::span<const double> y);
+  /// Writes the row of an output point that falls there; also the row just before the events of the next leg, if it has
+  /// any.
+  void pass_joint(bool has_events);
   /// Writes the row just after an event or corner, and the events between the rows.
   void close_instant(double xi, std::span<const double> y, std::span<const Event> events);
 
@@ -84,6 +90,7 @@ class OutputRows {
   ForwardSensitivities* sensitivities_;
   std::vector<Point> points_;
   std::size_t next_ = 0;  ///< first point that is not written yet
+  double reached_ = 0.0;  ///< where the present instant was opened
   bool is_paused_ = false;
   bool holds_ = false;
   std::size_t next_when_held_ = 0;

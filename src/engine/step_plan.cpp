@@ -64,6 +64,7 @@ Ramp ramp_of(const Step& step, int channel, const Ramp& held, HybridSystem& syst
 StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> held, const GuardSet& guard_set,
                    double xi, std::span<const double> y) {
   StepPlan plan;
+  plan.leg = scene.longest_program()[step].leg;
   for (std::size_t c = 0; c < scene.channels.size(); ++c) {
     const Channel& channel = scene.channels[c];
     plan.ramps.push_back(held[c]);
@@ -76,17 +77,19 @@ StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> h
       if (until.is_event())
         plan.ending_events.push_back(until.event);
       else
-        plan.conditions.push_back({until.quantity, index, until.value});
+        plan.conditions.push_back(
+            {until.quantity, until.wall.empty() ? index : static_cast<int>(scene.channel_of(until.wall)), until.value});
     }
     if (!of_channel.duration && !of_channel.rate) continue;  // takes as long as the others
     const double duration =
         of_channel.duration ? *of_channel.duration : std::abs(ramp.end - ramp.start) / *of_channel.rate;
     if (plan.duration >= 0.0 &&
         std::abs(duration - plan.duration) > k_same_number * std::max(duration, plan.duration)) {
-      throw Stop{{.limit = Limit::unequal_durations},
-                 fmt::format("step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
-                             "together; give equal durations",
-                             step + 1, channel.name, duration, plan.duration)};
+      throw Stop{
+          {.limit = Limit::unequal_durations},
+          fmt::format("step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
+                      "together; give equal durations",
+                      count_steps(std::span(channel.program).first(step + 1)), channel.name, duration, plan.duration)};
     }
     plan.duration = std::max(plan.duration, duration);
   }

@@ -23,6 +23,7 @@ struct StepPlan {
   double duration = -1.0;  ///< [s]; negative if no channel gives one
   std::vector<Condition> conditions;
   std::vector<std::string> ending_events;
+  Leg leg{};                   ///< place of the ramps in their step
   std::vector<int> detaching;  ///< channels that are withdrawn until their contacts are open
 };
 

@@ -23,7 +23,7 @@ void UnmetDemands::note_open(double xi) {
 }
 
 void UnmetDemands::note_held_at_begin(const Condition& condition, const StepClock& clock) {
-  notes_.add(clock.step + 1, condition_text(scene_, condition) + " holds where the step begins, and ends it there");
+  notes_.add(clock.number, condition_text(scene_, condition) + " holds where the step begins, and ends it there");
 }
 
 void UnmetDemands::note_conditions(const StepPlan& plan, const StepClock& clock, double xi, std::span<const double> y) {
@@ -32,14 +32,14 @@ void UnmetDemands::note_conditions(const StepPlan& plan, const StepClock& clock,
     const double begin = guard_set_.value_at_begin(i);
     const double end = scene_.system->quantity(condition.quantity, condition.channel, xi, y);
     const bool has_gone_away = std::abs(end - condition.target) > std::abs(begin - condition.target);
-    notes_.add(clock.step + 1,
+    notes_.add(clock.number,
                fmt::format("{} was never met{}", condition_text(scene_, condition),
                            has_gone_away ? ": it lay behind where the step began" : ""),
                fmt::format(" ({} at its beginning, {} at its end)", with_unit(begin, condition.quantity),
                            with_unit(end, condition.quantity)));
   }
   for (const std::string& event : plan.ending_events) {
-    notes_.add(clock.step + 1, fmt::format("until event = \"{}\" was never met: no such event happened", event));
+    notes_.add(clock.number, fmt::format("until event = \"{}\" was never met: no such event happened", event));
   }
 }
 
@@ -49,7 +49,7 @@ void UnmetDemands::note_forces(const StepPlan& plan, const StepClock& clock, dou
     const double force = ramp.value(xi);
     const bool was_open = open_since_[c] && xi - *open_since_[c] > k_same_instant;
     if (ramp.control != Control::force || force == 0.0 || !was_open) continue;
-    notes_.add(clock.step + 1,
+    notes_.add(clock.number,
                fmt::format("no contact bears the force that is prescribed to '{}'", scene_.channels[c].name),
                fmt::format(" ({:.6g} N at its end; open since t = {:.9g} s)", force, clock.time(*open_since_[c])));
   }

@@ -75,8 +75,9 @@ std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
 
 RunRecord record_with(Recorder& recorder, Scene& scene, std::string_view integrator, const Tolerances& tolerances,
                       const Output& output, ForwardSensitivities* sensitivities) {
-  const std::size_t rows =
-      output.times.empty() ? static_cast<std::size_t>(output.points) * scene.step_count() : output.times.size();
+  const std::size_t rows = output.times.empty()
+                               ? static_cast<std::size_t>(output.points) * count_steps(scene.longest_program())
+                               : output.times.size();
   recorder.reserve_rows(rows + k_event_rows);
   RunRecord record;
   static_cast<DriveResult&>(record) = drive(scene, integrator, tolerances, output, recorder, sensitivities);
@@ -121,6 +122,7 @@ std::string scenario_digest(const CheckedScenario& scenario) {
   std::string text = scenario.text;
   for (const std::string& override_text : scenario.overrides) text += "\n--set " + override_text;
   for (const auto& [option, curve] : scenario.curves) text += "\n--file " + option + '\n' + curve.text;
+  for (const auto& [name, content] : scenario.loading.files) text += "\n--program " + name + '\n' + content;
   return text_digest(text);
 }
 

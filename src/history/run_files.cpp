@@ -24,13 +24,14 @@ void write_table(const Table& table, const fs::path& file) { write_text_file(fil
 
 Json versions() { return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}}; }
 
-/// Content of the files that options name, so that the run can be repeated without these files.
+/// Content of the files that options and steps name, so that the run can be repeated without these files.
 Json files_of(const CheckedScenario& scenario) {
   Json files = Json::object();
   for (const auto& [option, curve] : scenario.curves) {
     files[scenario.model + '.' + option] = {{"name", std::get<std::string>(scenario.options.at(option))},
                                             {"text", curve.text}};
   }
+  for (const auto& [name, text] : scenario.loading.files) files["loading." + name] = {{"name", name}, {"text", text}};
   return files;
 }
 

@@ -84,7 +84,15 @@ class KeyFinder {
     }
     const auto stands = [&](const StepForm& form) { return table->contains(form.key); };
     const auto form = std::ranges::find_if(language_.steps, stands);
-    return form == language_.steps.end() ? no_such_path() : last_key(name, form->keys, form->foreign);
+    if (form == language_.steps.end()) return no_such_path();
+    const bool is_in_target = form->course && name == form->key && at_ < parts_.size();
+    return is_in_target ? find_in_course(*form->course) : last_key(name, form->keys, form->foreign);
+  }
+
+  KeyAnswer find_in_course(const CourseForm& course) {
+    const std::string name = take_name();
+    if (name != "sine") return last_key(name, course.table);
+    return at_ < parts_.size() ? last_key(take_name(), course.in_sine) : last_key(name, course.sine);
   }
 
   [[nodiscard]] KeyAnswer last_key(const std::string& name, std::span<const KeySpec> keys,

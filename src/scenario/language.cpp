@@ -42,9 +42,9 @@ constexpr Model k_any_model{.name = {},
 // Keys of steps and conditions of all models.
 constexpr std::array<string_view, 8> k_step_keys{
     "displacement", "force", "detach", "strain", "stress", "lateral_strain", "lateral_stress", "packing_fraction"};
-constexpr std::array<string_view, 8> k_until_keys{"force",          "displacement",    "pressure",
-                                                  "contact_radius", "apparent_radius", "stress_axial",
-                                                  "stress_lateral", "relative_density"};
+constexpr std::array<string_view, 9> k_until_keys{"wall",         "force",          "displacement",
+                                                  "pressure",     "contact_radius", "apparent_radius",
+                                                  "stress_axial", "stress_lateral", "relative_density"};
 constexpr std::array<string_view, 6> k_loading_keys{"configuration", "centre", "angle",
                                                     "oblique_walls", "wall",   "steps"};
 
@@ -333,6 +333,10 @@ std::vector<KeySpec> until_keys(const Model& model) {
     return keys;
   }
   std::vector<KeySpec> keys{
+      {.name = "wall",
+       .meaning = "contact class or wall of the quantities beside it; without it that of the step",
+       .kind = Kind::text,
+       .example = "\"axial\""},
       {.name = "force",
        .meaning = "force on the wall, compression positive",
        .kind = Kind::quantity,
@@ -418,18 +422,81 @@ KeySpec mark_key(string_view name, string_view meaning) {
   return {.name = name, .meaning = meaning, .kind = Kind::mark, .is_required = true, .example = "true"};
 }
 
+/// Tables that may stand for a target: values over time from a file, or a sine.
+CourseForm course_form(const KeySpec& target, string_view column) {
+  const auto value_key = [&](string_view name, string_view meaning, Range range) {
+    return KeySpec{.name = name,
+                   .meaning = meaning,
+                   .kind = Kind::quantity,
+                   .is_required = true,
+                   .dimension = target.dimension,
+                   .range = range,
+                   .example = target.example};
+  };
+  CourseForm form;
+  form.table = {
+      {.name = "table",
+       .meaning = "table of values over time; the value between two rows is linear in time",
+       .kind = Kind::file,
+       .is_required = true,
+       .example = "\"file.csv\""},
+      {.name = "time",
+       .meaning = "column of times from the beginning of the step",
+       .kind = Kind::text,
+       .is_required = true,
+       .example = "\"t[s]\""},
+      {.name = "value",
+       .meaning = "column of values",
+       .kind = Kind::text,
+       .is_required = true,
+       .example = fmt::format("\"{}\"", column)},
+  };
+  form.sine = {{.name = "sine",
+                .meaning = "a sine that begins at its mean",
+                .kind = Kind::table,
+                .is_required = true,
+                .may_be_empty = false,
+                .example = "{ mean = ..., amplitude = ..., frequency = \"1 Hz\", cycles = 5 }"}};
+  form.in_sine = {value_key("mean", "mean of the sine", {}),
+                  value_key("amplitude", "half the way", k_positive),
+                  {.name = "frequency",
+                   .meaning = "cycles over time",
+                   .kind = Kind::quantity,
+                   .is_required = true,
+                   .dimension = Dimension::frequency,
+                   .range = k_positive},
+                  {.name = "cycles",
+                   .meaning = "number of cycles",
+                   .kind = Kind::integer,
+                   .is_required = true,
+                   .range = {.lower = 1.0, .upper = k_most_steps},
+                   .example = "5"}};
+  for (const KeySpec& key : form.table) form.foreign_to_sine.push_back({key.name, "does not go with 'sine'"});
+  return form;
+}
+
+StepForm wall_form(Step::Kind kind, KeySpec target, string_view column, Dimension rate, const Model& model) {
+  CourseForm course = course_form(target, column);
+  StepForm form = ramp_form(kind, std::move(target), rate, model);
+  form.course = std::move(course);
+  return form;
+}
+
 std::vector<StepForm> step_forms(const Model& model) {
   KeySpec displacement{.name = "displacement",
                        .meaning = "ramp to this displacement of the wall",
                        .kind = Kind::quantity,
                        .is_required = true,
                        .dimension = Dimension::length,
-                       .example = "\"0.4 R0\""};
+                       .example = "\"0.4 R0\"",
+                       .may_be_table = true};
   KeySpec force{.name = "force",
                 .meaning = "ramp to this force",
                 .kind = Kind::quantity,
                 .is_required = true,
-                .dimension = Dimension::force};
+                .dimension = Dimension::force,
+                .example = "\"10 N\"",
+                .may_be_table = true};
   KeySpec count{.name = "cycle",
                 .meaning = "repeat the nested steps so many times",
                 .kind = Kind::integer,
@@ -444,8 +511,8 @@ std::vector<StepForm> step_forms(const Model& model) {
   std::vector<StepForm> forms;
   for (const DriveKey& drive : model.drives) forms.push_back(drive_form(drive, model));
   if (model.has_walls()) {
-    forms.push_back(ramp_form(Step::Kind::displacement, std::move(displacement), Dimension::velocity, model));
-    forms.push_back(ramp_form(Step::Kind::force, std::move(force), Dimension::force_rate, model));
+    forms.push_back(wall_form(Step::Kind::displacement, std::move(displacement), "x[mm]", Dimension::velocity, model));
+    forms.push_back(wall_form(Step::Kind::force, std::move(force), "F[N]", Dimension::force_rate, model));
   }
   const string_view hold = model.has_walls() ? "keep the controlled quantity constant: the displacement or the force"
                                              : "keep what is prescribed";
@@ -508,6 +575,9 @@ void add_loading(Language& language, const Model& model) {
 
   const std::string unused = fmt::format("is not used by model '{}'", model.name);
   language.foreign_step_keys = foreign_keys(k_step_keys, own_step_keys, unused);
+  if (model.has_walls()) {
+    language.foreign_step_keys.push_back({"sine", "stands in a target: displacement = { sine = { ... } }"});
+  }
   for (StepForm& form : language.steps) {
     form.foreign =
         foreign_keys(names_of(own_step_keys), form.keys, fmt::format("does not go with '{}' in one step", form.key));

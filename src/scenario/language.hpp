@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -32,8 +33,8 @@ struct KeySpec {
     texts,      ///< list of texts; a number in it is read as its text
     table,
     tables,  ///< not empty
-  };
     any,     ///< a value that is not checked
+  };
   using Default = std::variant<std::monostate, bool, double, std::string_view>;
 
   std::string_view name;
@@ -52,11 +53,11 @@ struct KeySpec {
   std::string example{};                   ///< as written in a file; empty: that of the dimension, or the first choice
   std::string_view only_with{};            ///< `[loading]`: the configuration that the key belongs to; empty: any
   std::span<const QuantityKey> columns{};  ///< of a file that is not a curve of two columns
-};
-
   bool may_be_table = false;               ///< of a quantity: a table may stand in its place, which the caller checks
   /// Former names of choices with the present ones.
   std::vector<std::pair<std::string_view, std::string_view>> renamed{};
+};
+
 /// A key of the language that does not belong where it was found, with the reason.
 struct ForeignKey {
   std::string_view name;
@@ -66,6 +67,14 @@ struct ForeignKey {
 /// Reason of a foreign key: none if no list names the key.
 [[nodiscard]] std::string_view reason_of(std::span<const ForeignKey> foreign, std::string_view key) noexcept;
 
+/// Keys of a table in the place of a step's target: values over time from a file, or a sine.
+struct CourseForm {
+  std::vector<KeySpec> table;  ///< keys beside each other
+  std::vector<KeySpec> sine;   ///< the one key `sine`
+  std::vector<KeySpec> in_sine;
+  std::vector<ForeignKey> foreign_to_sine;
+};
+
 /// One form of a step: the key that marks it, and its other keys.
 struct StepForm {
   std::optional<Step::Kind> kind;  ///< none: a cycle
@@ -74,6 +83,7 @@ struct StepForm {
   bool takes_duration_or_rate = false;  ///< exactly one of the two is required
   std::span<const DriveKey> lateral{};  ///< keys for the lateral direction, at most one of which is allowed
   std::vector<ForeignKey> foreign{};    ///< keys of other forms and of other models
+  std::optional<CourseForm> course{};   ///< none: the target is a value
 };
 
 inline constexpr int k_most_points = 1'000'000;

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <span>
 #include <utility>
 
 #include "scenario/program_reader.hpp"
+#include "scenario/program_rules.hpp"
+#include "scenario/words.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -24,6 +25,14 @@ Configuration to_configuration(const std::string& word) {
   if (word == "triaxial") return Configuration::triaxial;
   if (word == "strain-path") return Configuration::strain_path;
   return Configuration::simple;
+}
+
+/// Contact classes of a preset configuration.
+std::vector<std::string_view> classes_of(std::string_view configuration) {
+  if (configuration == "die") return {"axial", "lateral"};
+  if (configuration == "oblique-die") return {"axial", "lateral-x", "lateral-y", "oblique"};
+  if (configuration == "simple" || configuration == "hydrostatic") return {"axial"};
+  return {};
 }
 
 /// Sine of the angle between two directions; 2 for an angle of 90 degrees or more.
@@ -52,11 +61,15 @@ class LoadingReader {
     loading_.oblique_walls = static_cast<int>(section_.number("oblique_walls").value_or(0.0));
     loading_.steps = programs_.read(section_, "steps", "[[loading.steps]]");
     for (const Section::Origin& wall : section_.tables("wall", "[[loading.wall]]")) read_wall(wall);
+    loading_.files = programs_.files();
+    check_named_walls(configuration);
     if (configuration == "walls") {
       check_walls();
     } else if (!section_.has_or_misspells("steps")) {
       report_missing("steps");
     }
+    // With faults in the programs, differences between them could be mere consequences.
+    if (reading_.faults.size() == faults_before_) check_programs(programs_of_walls(), reading_.faults);
     return std::move(loading_);
   }
 
@@ -106,8 +119,18 @@ class LoadingReader {
     check_names();
     check_directions();
     check_driven();
-    // With faults in the programs, differences between them could be mere consequences.
-    if (reading_.faults.size() == faults_before_) check_programs();
+  }
+
+  /// Reports conditions on walls that the scene does not have.
+  void check_named_walls(const std::string& configuration) {
+    std::vector<std::string_view> names = classes_of(configuration);
+    for (const WallSpec& wall : loading_.walls) names.emplace_back(wall.name);
+    if (names.empty()) return;
+    for (const auto& [name, where] : programs_.named_walls()) {
+      if (std::ranges::find(names, name) != names.end()) continue;
+      reading_.faults.add(where, fmt::format("wall = \"{}\": there is no such wall; expected one of {}{}", shown(name),
+                                             listed(names), did_you_mean(name, names)));
+    }
   }
 
   void check_names() {
@@ -150,45 +173,14 @@ class LoadingReader {
     }
   }
 
-  [[nodiscard]] std::span<const Step> program_of(const WallSpec& wall) const {
-    if (wall.is_fixed) return {};
-    return wall.steps.empty() ? loading_.steps : wall.steps;
-  }
-
-  /// Steps end for all walls together: programs need equally many steps, and given durations have to be equal.
-  void check_programs() {
-    const WallSpec* first = nullptr;
+  [[nodiscard]] std::vector<WallProgram> programs_of_walls() const {
+    if (loading_.configuration != Configuration::walls) return {{{}, {}, 0.0, loading_.steps}};
+    std::vector<WallProgram> programs;
     for (const WallSpec& wall : loading_.walls) {
-      const auto program = program_of(wall);
-      if (program.empty()) continue;
-      if (first == nullptr) {
-        first = &wall;
-      } else if (program.data() != program_of(*first).data()) {
-        compare_programs(*first, wall);
-      }
+      const std::vector<Step>& steps = wall.steps.empty() ? loading_.steps : wall.steps;
+      if (!wall.is_fixed && !steps.empty()) programs.push_back({wall.name, wall.where, wall.gap, steps});
     }
-  }
-
-  void compare_programs(const WallSpec& first, const WallSpec& wall) {
-    const auto expected = program_of(first);
-    const auto program = program_of(wall);
-    if (program.size() != expected.size()) {
-      reading_.faults.add(
-          wall.where, fmt::format("wall '{}' has {} steps where wall '{}' has {}; expected equal numbers", wall.name,
-                                  program.size(), first.name, expected.size()));
-      return;
-    }
-    for (std::size_t k = 0; k < program.size(); ++k) {
-      if (!program[k].duration || !expected[k].duration) continue;
-      const double a = *program[k].duration;
-      const double b = *expected[k].duration;
-      if (std::abs(a - b) <= k_same_number * std::max(a, b)) continue;
-      reading_.faults.add(program[k].where,
-                          fmt::format("step {} of wall '{}' takes {:.9g} s where that of wall '{}' takes {:.9g} s; "
-                                      "steps end together, so expected equal durations",
-                                      k + 1, wall.name, a, first.name, b));
-      return;
-    }
+    return programs;
   }
 
   Reading& reading_;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "scenario/course_reader.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
@@ -63,8 +64,8 @@ std::vector<Step> ProgramReader::read_step(const Section::Origin& table, int dep
   }
   const Section section(reading_, table, form->keys, form->foreign);
   if (!form->kind) return read_cycle(section, depth);
-  if (form->takes_duration_or_rate) check_duration_or_rate(section);
-  return {read_plain_step(section, *form)};
+  if (form->takes_duration_or_rate) check_duration_or_rate(section, form->course && section.has_table(form->key));
+  return read_plain_step(section, *form);
 }
 
 /// The form that the keys of a step show, else the one whose key is misspelt there.
@@ -106,10 +107,16 @@ void ProgramReader::report_formless(const Section::Origin& table) {
                       fmt::format("the step has nothing to do; expected exactly one of {}", fmt::join(forms, ", ")));
 }
 
-void ProgramReader::check_duration_or_rate(const Section& section) {
+void ProgramReader::check_duration_or_rate(const Section& section, bool has_own_times) {
   const bool has_duration = section.has_or_misspells("duration");
   const bool has_rate = section.has_or_misspells("rate");
-  if (has_duration && has_rate) {
+  if (has_own_times) {
+    for (const char* key : {"duration", "rate"}) {
+      if (!section.has(key)) continue;
+      reading_.faults.add(section.key_place(key),
+                          fmt::format("key '{}' does not go with a table or a sine, which has times of its own", key));
+    }
+  } else if (has_duration && has_rate) {
     reading_.faults.add(section.key_place("rate"),
                         "key 'rate' does not go with 'duration'; expected exactly one of them");
   } else if (!has_duration && !has_rate) {
@@ -135,15 +142,24 @@ std::vector<Step> ProgramReader::read_cycle(const Section& section, int depth) {
   return steps;
 }
 
-Step ProgramReader::read_plain_step(const Section& section, const StepForm& form) {
-  Step step;
-  step.where = section.place();
-  step.kind = *form.kind;
-  if (form.takes_duration_or_rate) read_targets(section, form, step);
-  step.duration = section.number("duration");
-  step.rate = section.number("rate");
-  if (section.has("until")) step.until = read_until(section);
-  return step;
+std::vector<Step> ProgramReader::read_plain_step(const Section& section, const StepForm& form) {
+  std::vector<Until> conditions;
+  if (section.has("until")) conditions = read_until(section);
+  std::vector<Step> steps;
+  if (form.course && section.has_table(form.key)) {
+    steps = read_course(reading_, section, form, files_);
+  } else {
+    Step& step = steps.emplace_back();
+    if (form.takes_duration_or_rate) read_targets(section, form, step);
+    step.duration = section.number("duration");
+    step.rate = section.number("rate");
+  }
+  for (Step& step : steps) {
+    step.where = section.place();
+    step.kind = *form.kind;
+    step.until = conditions;
+  }
+  return steps;
 }
 
 void ProgramReader::read_targets(const Section& section, const StepForm& form, Step& step) {
@@ -171,14 +187,24 @@ void ProgramReader::read_targets(const Section& section, const StepForm& form, S
 
 std::vector<Until> ProgramReader::read_until(const Section& step) {
   const Section section(reading_, step.table("until", "until"), language_.until, language_.foreign_until_keys);
+  const std::string wall = section.text("wall");
   std::vector<Until> conditions;
+  bool asks_wall = false;
   for (const KeySpec& spec : language_.until) {
-    if (!section.has(spec.name)) continue;
+    if (!section.has(spec.name) || spec.name == "wall") continue;
     if (const auto quantity = quantity_of(spec.name)) {
-      conditions.push_back({.quantity = *quantity, .value = section.number(spec.name).value_or(0.0)});
+      conditions.push_back({.quantity = *quantity, .value = section.number(spec.name).value_or(0.0), .wall = wall});
+      asks_wall = true;
     } else {
       conditions.push_back({.event = section.text(spec.name)});
     }
+  }
+  if (wall.empty()) return conditions;
+  named_walls_.push_back({wall, section.value_place("wall")});
+  if (!asks_wall) {
+    reading_.faults.add(section.key_place("wall"),
+                        "key 'wall' says at which wall a quantity counts; expected one beside it, for example "
+                        "force = \"10 N\"");
   }
   return conditions;
 }

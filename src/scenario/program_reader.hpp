@@ -19,21 +19,32 @@ class ProgramReader {
   /// @param label  name of a step in messages: "[[loading.steps]]"
   [[nodiscard]] std::vector<Step> read(const Section& parent, std::string_view key, const std::string& label);
 
+  /// A wall that a condition names.
+  struct NamedWall {
+    std::string name;
+    SourceLocation where;
+  };
+  [[nodiscard]] const std::vector<NamedWall>& named_walls() const noexcept { return named_walls_; }
+  /// Texts of the files that steps name.
+  [[nodiscard]] const FileTexts& files() const noexcept { return files_; }
+
  private:
   [[nodiscard]] std::vector<Step> read_list(const Section& parent, std::string_view key, const std::string& label,
                                             int depth);
   [[nodiscard]] std::vector<Step> read_step(const Section::Origin& table, int depth);
   [[nodiscard]] std::vector<Step> read_cycle(const Section& section, int depth);
-  [[nodiscard]] Step read_plain_step(const Section& section, const StepForm& form);
+  [[nodiscard]] std::vector<Step> read_plain_step(const Section& section, const StepForm& form);
   void read_targets(const Section& section, const StepForm& form, Step& step);
   [[nodiscard]] std::vector<Until> read_until(const Section& step);
-  void check_duration_or_rate(const Section& section);
+  void check_duration_or_rate(const Section& section, bool has_own_times);
   [[nodiscard]] bool is_within_limit(std::size_t steps, const SourceLocation& where);
   [[nodiscard]] const StepForm* form_of(const toml::table& table) const;
   void report_formless(const Section::Origin& table);
 
   Reading& reading_;
   const Language& language_;
+  std::vector<NamedWall> named_walls_;
+  FileTexts files_;
   std::size_t steps_so_far_ = 0;  ///< steps of all programs read so far
 };
 

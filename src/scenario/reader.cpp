@@ -135,31 +135,23 @@ void read_material(Reading& reading, const Section& root, const Language& langua
   }
 }
 
-FileText text_in(const FileTexts& files, const std::string& name) {
-  const auto found = files.find(name);
-  return found == files.end() ? FileText{{}, "it was not recorded"} : FileText{found->second, {}};
-}
-
 /// Reads the curve in the file that an option names, if it names one.
-void read_curve_of(Reading& reading, const Section& options, const KeySpec& spec, const std::filesystem::path& folder,
-                   const FileTexts* files, CheckedScenario& scenario) {
+void read_curve_of(Reading& reading, const Section& options, const KeySpec& spec, CheckedScenario& scenario) {
   const std::string name = options.text(spec.name);
   if (name.empty()) return;
   const std::string naming = fmt::format("{} = \"{}\"", spec.name, shown(name));
   const SourceLocation place = options.value_place(spec.name);
-  const std::filesystem::path file = folder / name;
-  const FileText read = files == nullptr ? read_text_file(file, k_largest_table) : text_in(*files, name);
-  scenario.curves.emplace(spec.name, take_curve(read, file.string(), spec.columns, place, naming, reading.faults));
+  scenario.curves.emplace(spec.name,
+                          take_curve(text_of_file(reading, name, k_largest_table), (reading.folder / name).string(),
+                                     spec.columns, place, naming, reading.faults));
 }
 
-void read_options(Reading& reading, const Section& root, const Language& language, const std::string& origin,
-                  const FileTexts* files, CheckedScenario& scenario) {
+void read_options(Reading& reading, const Section& root, const Language& language, CheckedScenario& scenario) {
   const std::string name(language.model->name);
   const Section options(reading, root.table(name, "[" + name + "]"), language.options);
-  const std::filesystem::path folder = std::filesystem::path(origin).parent_path();
   for (const KeySpec& spec : language.options) {
     if (auto value = option_value(options, spec)) scenario.options.emplace(spec.name, std::move(*value));
-    if (spec.kind == KeySpec::Kind::file) read_curve_of(reading, options, spec, folder, files, scenario);
+    if (spec.kind == KeySpec::Kind::file) read_curve_of(reading, options, spec, scenario);
   }
 }
 
@@ -169,8 +161,8 @@ void read_output(Reading& reading, const Section& root, const Language& language
   // The default number of points applies only without times.
   const bool has_points = scenario.output.times.empty() || output.has("points");
   scenario.output.points = has_points ? static_cast<int>(output.number("points").value_or(0.0)) : 0;
-  std::size_t steps = scenario.loading.steps.size();
-  for (const WallSpec& wall : scenario.loading.walls) steps = std::max(steps, wall.steps.size());
+  std::size_t steps = count_steps(scenario.loading.steps);
+  for (const WallSpec& wall : scenario.loading.walls) steps = std::max(steps, count_steps(wall.steps));
   const double rows = static_cast<double>(scenario.output.points) * static_cast<double>(steps);
   if (rows > k_most_rows && !output.has("times")) {
     reading.faults.add(
@@ -203,7 +195,7 @@ ReadQuantity quantity_at(const std::string& path, const toml::table& tree, const
   std::optional<double> number;
   for (const std::string& plain : plain_paths(path)) {
     const toml::node* node = tree.at_path(plain).node();
-    if (node == nullptr) return {{}, fmt::format("the scenario does not give '{}'", shown(plain))};
+    if (node == nullptr || node->is_table()) return {{}, fmt::format("the scenario does not give '{}'", shown(plain))};
     const auto text = node->value<std::string>();
     const std::optional<double> value =
         text ? parse_quantity(*text, spec.dimension, radius).value : node->value<double>();
@@ -240,7 +232,10 @@ void read_sensitivities(Reading& reading, const Section& root, const toml::table
 CheckedScenario read_tree(const toml::table& tree, const std::string& origin, const FileTexts* files,
                           FaultList& faults) {
   const Language& language = language_of(model_to_check_against(tree));
-  Reading reading{.faults = faults, .homes = language.homes};
+  Reading reading{.faults = faults,
+                  .homes = language.homes,
+                  .folder = std::filesystem::path(origin).parent_path(),
+                  .recorded = files};
   const SourceLocation top{origin};
   const Section root(reading, {&tree, top, "the scenario"}, language.root, language.foreign_tables);
 
@@ -250,7 +245,7 @@ CheckedScenario read_tree(const toml::table& tree, const std::string& origin, co
   read_particle(reading, root, language, scenario);
   if (language.model != nullptr) {
     read_material(reading, root, language, scenario);
-    read_options(reading, root, language, origin, files, scenario);
+    read_options(reading, root, language, scenario);
   }
   if (!language.loading.empty()) {
     scenario.loading = read_loading(reading, root.table("loading", "[loading]"), language);

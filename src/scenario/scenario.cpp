@@ -180,6 +180,10 @@ double angle_between(const std::array<double, 3>& a, const std::array<double, 3>
   return std::atan2(cross, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
+std::size_t count_steps(std::span<const Step> program) noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(program, [](const Step& step) { return step.leg.is_first(); }));
+}
+
 std::optional<Control> control_of(Step::Kind kind) noexcept {
   switch (kind) {
     case Step::Kind::displacement:

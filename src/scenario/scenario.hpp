@@ -19,8 +19,19 @@
 
 namespace monograin {
 
-/// One step of the program of a wall, a packing or a material point. Cycles are written out. Exactly one of duration
-/// and rate is given; neither in a channel that follows another one and takes as long.
+/// Place of a ramp in a step that follows a table or a sine, which is written out as ramps. Any other step has one leg.
+struct Leg {
+  double begin = 0.0;     ///< share of the step's time at which the ramp begins
+  double end = 1.0;       ///< and ends
+  bool is_corner = true;  ///< the program has a corner where the ramp begins; false within a curve
+
+  [[nodiscard]] bool is_first() const noexcept { return begin == 0.0; }
+  [[nodiscard]] bool is_last() const noexcept { return end == 1.0; }
+  [[nodiscard]] bool operator==(const Leg&) const = default;
+};
+
+/// One step of the program of a wall, a packing or a material point, or one leg of a step. Cycles are written out.
+/// Exactly one of duration and rate is given; neither in a channel that follows another one and takes as long.
 struct Step {
   enum class Kind { displacement, force, strain, stress, packing_fraction, hold, detach };
   /// Prescribed quantity in the lateral direction.
@@ -35,7 +46,12 @@ struct Step {
   std::vector<Until> until;
   SourceLocation where;
   std::optional<Lateral> lateral{};  ///< of a material point; none: the lateral quantity keeps its value
+  Leg leg{};
+  std::optional<double> start{};  ///< value at which the ramp is to begin [SI]; none: the present one
 };
+
+/// Number of steps of a program, all legs of a step counted as one.
+[[nodiscard]] std::size_t count_steps(std::span<const Step> program) noexcept;
 
 /// Quantity that a ramp controls; none for a hold or a withdrawal.
 [[nodiscard]] std::optional<Control> control_of(Step::Kind kind) noexcept;
@@ -54,6 +70,9 @@ struct WallSpec {
 /// Angle between two directions of any length [rad].
 [[nodiscard]] double angle_between(const std::array<double, 3>& a, const std::array<double, 3>& b) noexcept;
 
+/// Texts of the files that a scenario names, by their names in the scenario.
+using FileTexts = std::map<std::string, std::string>;
+
 struct Loading {
   enum class Configuration { simple, die, hydrostatic, oblique_die, walls, triaxial, strain_path };
   Configuration configuration = Configuration::simple;
@@ -62,6 +81,7 @@ struct Loading {
   int oblique_walls = 2;
   std::vector<Step> steps;
   std::vector<WallSpec> walls;  ///< of configuration `walls`
+  FileTexts files;              ///< that steps name
 };
 
 struct Output {
@@ -101,9 +121,6 @@ struct CheckedScenario {
   std::vector<std::string> doubts;                   ///< values that may not be meant as they are read, a sentence each
   std::shared_ptr<const ScenarioTemplate> variants;  ///< template for other numbers; null without sensitivities
 };
-
-/// Texts of the files that a scenario names, by their names in the scenario.
-using FileTexts = std::map<std::string, std::string>;
 
 /// Source of a scenario.
 struct ScenarioSource {

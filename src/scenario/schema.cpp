@@ -65,15 +65,41 @@ class ModelSchema {
   }
 
   [[nodiscard]] json step() const {
-    const Contents contents{{"until", table_schema(language_.until)}, {"steps", reference("step")}};
     json forms = json::array();
     for (const StepForm& form : language_.steps) {
+      Contents contents{{"until", until()}, {"steps", reference("step")}};
+      if (form.course) contents.emplace(form.key, course(*form.course));
       json schema = table_schema(form.keys, contents);
       if (form.takes_duration_or_rate) schema["oneOf"] = exactly_one_of("duration", "rate");
+      if (form.course) add_rules_of_course(schema, form.key);
       for (const DriveKey& key : form.lateral) add_exclusions(schema, form, key);
       forms.push_back(std::move(schema));
     }
     return {{"oneOf", std::move(forms)}};
+  }
+
+  [[nodiscard]] json until() const {
+    json schema = table_schema(language_.until);
+    if (find_key(language_.until, "wall") == nullptr) return schema;
+    // A wall needs a quantity beside it.
+    schema["anyOf"] = {{{"not", {{"required", {"wall"}}}}}};
+    for (const KeySpec& key : language_.until) {
+      if (key.kind == KeySpec::Kind::quantity) schema["anyOf"].push_back({{"required", {key.name}}});
+    }
+    return schema;
+  }
+
+  static json course(const CourseForm& form) {
+    return {{"oneOf", {table_schema(form.table), table_schema(form.sine, {{"sine", table_schema(form.in_sine)}})}}};
+  }
+
+  /// A table or a sine has times of its own; any other target has a duration or a rate.
+  static void add_rules_of_course(json& schema, std::string_view target) {
+    const json is_course{{"properties", {{target, {{"type", "object"}}}}}};
+    for (json& either : schema["oneOf"]) either["not"] = is_course;
+    json own_times = is_course;
+    own_times["not"] = {{"anyOf", exactly_one_of("duration", "rate")}};
+    schema["oneOf"].push_back(std::move(own_times));
   }
 
   /// Excludes other lateral keys, and a pair, beside a lateral key.

@@ -63,6 +63,12 @@ json quantity(const KeySpec& spec) {
   return {{"anyOf", {number, unit_text(spec)}}};
 }
 
+json quantity_or_table(const KeySpec& spec, const json& content) {
+  json schema = quantity(spec);
+  if (spec.may_be_table) schema["anyOf"].push_back(content);
+  return schema;
+}
+
 json integer(const KeySpec& spec) {
   json schema = bounds(spec.range);
   schema["type"] = "integer";
@@ -80,13 +86,13 @@ json choice(const KeySpec& spec) {
   for (const std::string_view word : spec.choices) {
     if (is_whole_number(word)) words.push_back(std::stoll(std::string(word)));
   }
+  for (const auto& [former, present] : spec.renamed) words.push_back(former);
   return {{"enum", std::move(words)}};
 }
 
 json direction() {
   json component = bounds({.lower = -k_greatest_normal, .upper = k_greatest_normal});
   const json points_somewhere{{"anyOf", {{{"minimum", k_least_normal}}, {{"maximum", -k_least_normal}}}}};
-  for (const auto& [former, present] : spec.renamed) words.push_back(former);
   return {{"type", "array"}, {"items", component}, {"minItems", 3}, {"maxItems", 3}, {"contains", points_somewhere}};
 }
 
@@ -112,7 +118,7 @@ json kind_schema(const KeySpec& spec, const json& content) {
     case Kind::integer:
       return integer(spec);
     case Kind::quantity:
-      return quantity(spec);
+      return quantity_or_table(spec, content);
     case Kind::pair:
       return {{"anyOf",
                {quantity(spec), {{"type", "array"}, {"items", quantity(spec)}, {"minItems", 2}, {"maxItems", 2}}}}};
@@ -126,14 +132,14 @@ json kind_schema(const KeySpec& spec, const json& content) {
       return spec.may_be_empty ? content : with(content, "minProperties", 1);
     case Kind::tables:
       return {{"type", "array"}, {"items", content}, {"minItems", 1}};
+    case Kind::any:
+      break;
   }
   return json::object();
 }
 
 json default_json(const KeySpec& spec) {
   return std::visit(
-    case Kind::any:
-      break;
       [](const auto& value) -> json {
         if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
           return nullptr;

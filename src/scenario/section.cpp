@@ -71,6 +71,12 @@ std::vector<std::string_view> check_names(Reading& reading, const toml::table& t
   return suggested;
 }
 
+FileText text_of_file(const Reading& reading, const std::string& name, std::size_t largest) {
+  if (reading.recorded == nullptr) return read_text_file(reading.folder / name, largest);
+  const auto found = reading.recorded->find(name);
+  return found == reading.recorded->end() ? FileText{{}, "it was not recorded"} : FileText{found->second, {}};
+}
+
 Section::Section(Reading& reading, Origin origin, std::span<const KeySpec> keys, std::span<const ForeignKey> foreign)
     : reading_(reading), origin_(std::move(origin)), keys_(keys) {
   misspelt_ = check_names(reading_, *origin_.table, origin_.place, origin_.label, keys_, foreign);
@@ -78,6 +84,11 @@ Section::Section(Reading& reading, Origin origin, std::span<const KeySpec> keys,
     if (const toml::node* node = origin_.table->get(spec.name)) check_value(spec, *node);
   }
   check_required();
+}
+
+bool Section::has_table(std::string_view key) const {
+  const toml::node* node = origin_.table->get(key);
+  return node != nullptr && node->is_table();
 }
 
 bool Section::has_or_misspells(std::string_view key) const {
@@ -177,6 +188,8 @@ std::optional<Section::Value> Section::read(const KeySpec& spec, const toml::nod
     case Kind::tables:
       check_tables(spec, node);
       return std::nullopt;
+    case Kind::any:
+      return std::nullopt;
   }
   return std::nullopt;
 }
@@ -188,8 +201,6 @@ std::optional<Section::Value> Section::read_text(const KeySpec& spec, const toml
   if (spec.kind == Kind::file && text->get().empty()) return unexpected(spec, node);
   return text->get();
 }
-    case Kind::any:
-      return std::nullopt;
 
 std::optional<Section::Value> Section::read_choice(const KeySpec& spec, const toml::node& node) {
   const std::optional<std::string> written = as_word(node);
@@ -222,6 +233,7 @@ std::optional<double> Section::read_integer(const KeySpec& spec, const toml::nod
 }
 
 std::optional<double> Section::read_quantity(const KeySpec& spec, const toml::node& node) {
+  if (spec.may_be_table && node.is_table()) return std::nullopt;
   std::optional<double> value = as_number(node);
   const auto* text = node.as_string();
   if (text != nullptr && spec.dimension != Dimension::none) {

@@ -3,6 +3,7 @@
 
 #include <toml++/toml.h>
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <span>
@@ -27,7 +28,12 @@ struct Reading {
   /// Numbers without a unit whose value in SI units is unlikely, a sentence each.
   std::vector<std::string> doubtful_lengths{};
   std::vector<std::string> doubtful_stresses{};
+  std::filesystem::path folder{};       ///< of the files that the text names
+  const FileTexts* recorded = nullptr;  ///< texts of these files; null: they are read
 };
+
+/// Text of a file that a scenario names, or the problem.
+[[nodiscard]] FileText text_of_file(const Reading& reading, const std::string& name, std::size_t largest);
 
 /// Reports keys that are neither among `keys` nor, with their reason, among `foreign`.
 /// @return the suggestions made for misspelt keys
@@ -50,6 +56,9 @@ class Section {
 
   /// True if the text contains the key, with a valid value or not.
   [[nodiscard]] bool has(std::string_view key) const { return origin_.table->contains(key); }
+
+  /// True if the text has a table below the key.
+  [[nodiscard]] bool has_table(std::string_view key) const;
 
   /// True if the text contains the key, or a key that was reported as its misspelling.
   [[nodiscard]] bool has_or_misspells(std::string_view key) const;

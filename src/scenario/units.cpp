@@ -65,10 +65,11 @@ constexpr std::array k_force_rates{
 };
 constexpr std::array k_strain_rates{Unit{"1/s", 1.0}, Unit{"%/s", 1e-2}, Unit{"1/min", 1.0 / 60.0}};
 constexpr std::array k_stress_rates{Unit{"Pa/s", 1.0}, Unit{"kPa/s", 1e3}, Unit{"MPa/s", 1e6}, Unit{"GPa/s", 1e9}};
+constexpr std::array k_frequencies{Unit{"Hz", 1.0}, Unit{"mHz", 1e-3}, Unit{"kHz", 1e3}, Unit{"MHz", 1e6}};
 constexpr std::array k_angles{Unit{"deg", std::numbers::pi / 180.0}, Unit{"rad", 1.0}};
 
 // The limits admit grains from a nanometre to a kilometre, gels and diamond, and durations over 24 decades.
-const std::array<DimensionInfo, 12> k_dimensions{{
+const std::array<DimensionInfo, 13> k_dimensions{{
     {Dimension::none, "a number", "", "0.3", "", 0.0, 1e100, {}},
     {Dimension::length, "a length", "m", "\"10 mm\"", "R0", 1e-12, 1e6, k_lengths},
     {Dimension::stress, "a stress", "Pa", "\"50 MPa\"", "", 1e-6, 1e18, k_stresses},
@@ -81,6 +82,7 @@ const std::array<DimensionInfo, 12> k_dimensions{{
     {Dimension::angle, "an angle", "rad", "\"37.5 deg\"", "", 1e-9, 1e3, k_angles},
     {Dimension::strain_rate, "a strain rate", "1/s", "\"0.1 1/s\"", "", 1e-30, 1e30, k_strain_rates},
     {Dimension::stress_rate, "a stress rate", "Pa/s", "\"1 MPa/s\"", "", 1e-24, 1e33, k_stress_rates},
+    {Dimension::frequency, "a frequency", "Hz", "\"2 Hz\"", "", 1e-18, 1e15, k_frequencies},
 }};
 
 struct LeadingNumber {

@@ -95,10 +95,13 @@ struct Program {
   bool moves_centre = false;
 };
 
+/// True if a model may predict where a condition ends the ramp of its wall.
+bool is_foreseen(const Until& until) { return until.wall.empty() && (until.value > 0.0 || until.is_event()); }
+
 /// Displacement and force at which a condition ends a ramp; infinity if only a run of the model can show it.
 Reach end_of(const Program& program, const Until& until) {
   Reach end{.displacement = k_infinity, .force = k_infinity};
-  if (!(until.value > 0.0) && !until.is_event()) return end;
+  if (!is_foreseen(until)) return end;
   if (program.model.reach != nullptr) end = program.model.reach(program.input, until);
   // A centre that moves follows the walls: they move farther than their contacts are deep.
   if (program.moves_centre) end.displacement = k_infinity;
@@ -142,8 +145,7 @@ std::size_t first_unloading_step(const Program& program, std::span<const Step> s
     if (!std::isfinite(depth)) continue;  // ends at a limit of the law
     if (deepest > k_resolution * program.input.radius && depth < (1.0 - k_same_depth) * deepest) return k;
     for (const Until& until : step.until) {
-      const bool is_foreseen = until.value > 0.0 || until.is_event();
-      depth = is_foreseen ? std::min(depth, (1.0 - k_same_depth) * end_of(program, until).displacement) : 0.0;
+      depth = is_foreseen(until) ? std::min(depth, (1.0 - k_same_depth) * end_of(program, until).displacement) : 0.0;
     }
     deepest = std::max(deepest, depth);
   }
@@ -261,10 +263,21 @@ void add_walls(const CheckedScenario& scenario, bool merges_walls, Scene& scene)
 
 }  // namespace
 
-std::size_t Scene::step_count() const noexcept {
-  std::size_t count = 0;
-  for (const Channel& channel : channels) count = std::max(count, channel.program.size());
-  return count;
+std::span<const Step> Scene::longest_program() const noexcept {
+  std::span<const Step> longest;
+  for (const Channel& channel : channels) {
+    if (channel.program.size() > longest.size()) longest = channel.program;
+  }
+  return longest;
+}
+
+std::size_t Scene::channel_of(std::string_view wall) const {
+  for (std::size_t c = 0; c < walls.size(); ++c) {
+    if (channels[c].name == wall || std::ranges::find(walls[c], wall) != walls[c].end()) return c;
+  }
+  // Where walls are not merged, each of a preset class is a class of its own.
+  const auto is_of_class = [&](const std::vector<std::string>& names) { return names.front().starts_with(wall); };
+  return static_cast<std::size_t>(std::ranges::find_if(walls, is_of_class) - walls.begin());
 }
 
 std::vector<Wall> make_walls(const CheckedScenario& scenario) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenario/scenario.hpp"
@@ -36,7 +38,12 @@ struct Scene {
   std::vector<std::string> skipped;             ///< computations that are left out because the scene does not need them
   std::unique_ptr<HybridSystem> system;
 
-  [[nodiscard]] std::size_t step_count() const noexcept;
+  /// Program with the most steps.
+  [[nodiscard]] std::span<const Step> longest_program() const noexcept;
+  /// Number of ramps, one or several for each step.
+  [[nodiscard]] std::size_t step_count() const noexcept { return longest_program().size(); }
+  /// Channel of a contact class, or of the class that has a wall.
+  [[nodiscard]] std::size_t channel_of(std::string_view wall) const;
 };
 
 /// Walls of a scenario: those of the preset configuration, or the free walls.

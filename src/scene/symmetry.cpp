@@ -11,7 +11,8 @@ namespace monograin {
 namespace {
 
 bool same_step(const Step& a, const Step& b) {
-  return a.kind == b.kind && a.target == b.target && a.duration == b.duration && a.rate == b.rate && a.until == b.until;
+  return a.kind == b.kind && a.target == b.target && a.duration == b.duration && a.rate == b.rate &&
+         a.until == b.until && a.leg == b.leg;
 }
 
 /// Colours of walls: those with the same gap and the same program have the same colour.

@@ -36,14 +36,14 @@ class OutputRowsTest : public ::testing::Test {
   Texts written() { return std::exchange(sink_.rows, {}); }
 
   Output output_{.points = 4, .times = {}};
-  StepClock clock_{.step = 1, .start = 10.0, .duration = 2.0};
+  StepClock clock_{.step = 1, .start = 10.0, .duration = 2.0, .number = 2};
   FakeIntegrator integrator_;
   TextSink sink_;
   OutputRows rows_{output_, clock_, integrator_, sink_, nullptr, 1};
 };
 
 TEST_F(OutputRowsTest, DivideAStep) {
-  rows_.place(1.0, false);
+  rows_.place({}, 1.0, false);
   rows_.write_before(0.0, 0.6);
   EXPECT_EQ(written(), (Texts{"0 2 10.5 0.25", "0 2 11 0.5"}));
   rows_.write_before(0.6, 1.0);
@@ -52,8 +52,17 @@ TEST_F(OutputRowsTest, DivideAStep) {
   EXPECT_EQ(written(), (Texts{"-1 2 12 1", "0 2 12 1"}));
 }
 
+TEST_F(OutputRowsTest, DivideAStepOfSeveralLegs) {
+  // The clock is that of the leg.
+  rows_.place({0.25, 0.75, true}, 1.0, false);
+  rows_.write_before(0.0, 1.0);
+  EXPECT_EQ(written(), Texts{"0 2 11 0.5"});
+  rows_.open_instant(1.0, std::vector{1.0});
+  EXPECT_EQ(written(), (Texts{"-1 2 12 1", "0 2 12 1"}));
+}
+
 TEST_F(OutputRowsTest, StandOnBothSidesOfAnEvent) {
-  rows_.place(1.0, false);
+  rows_.place({}, 1.0, false);
   rows_.write_before(0.0, 0.25);
   rows_.open_instant(0.25, std::vector{0.25});
   rows_.close_instant(0.25, std::vector{7.0}, std::vector<Event>{{"yield"}});
@@ -61,7 +70,7 @@ TEST_F(OutputRowsTest, StandOnBothSidesOfAnEvent) {
 }
 
 TEST_F(OutputRowsTest, EndWhereAStepEndsThatCouldHaveEndedElsewhere) {
-  rows_.place(0.8, true);
+  rows_.place({}, 0.8, true);
   rows_.write_before(0.0, 0.8001);
   EXPECT_EQ(written(), (Texts{"0 2 10.4 0.2", "0 2 10.8 0.4", "0 2 11.2 0.6"}));
   rows_.end_step(0.8001);
@@ -77,7 +86,7 @@ TEST_F(OutputRowsTest, AreNotWrittenInAPause) {
 }
 
 TEST_F(OutputRowsTest, KeptBackComeAgainOrAreWrittenLater) {
-  rows_.place(1.0, false);
+  rows_.place({}, 1.0, false);
   rows_.hold();
   rows_.write_before(0.0, 0.6);
   EXPECT_EQ(written(), Texts{});
@@ -91,7 +100,7 @@ TEST_F(OutputRowsTest, KeptBackComeAgainOrAreWrittenLater) {
 TEST_F(OutputRowsTest, AtAskedInstantsStandInTheirStepOnly) {
   Output output{.times = {9.0, 10.0, 11.0, 12.0, 13.0}};
   OutputRows rows(output, clock_, integrator_, sink_, nullptr, 1);
-  rows.place(1.0, false);
+  rows.place({}, 1.0, false);
   rows.write_before(0.0, 1.0);
   rows.open_instant(1.0, std::vector{1.0});
   EXPECT_EQ(written(), (Texts{"0 2 11 0.5", "-1 2 12 1", "0 2 12 1"}));

@@ -53,13 +53,13 @@ class DisplacementProgram {
     for (std::size_t k = 0; k < ends_.size(); ++k) {
       if (is_replaced_[k]) replaced_.push_back(k + 1);
     }
-    if (!replaced_.empty()) override_programs();
+    if (!replaced_.empty() && !has_legs_) override_programs();
   }
 
   /// Numbers of the steps to be replaced, from 1.
   [[nodiscard]] const std::vector<std::size_t>& replaced() const noexcept { return replaced_; }
   /// Overrides of the scenario that make the program; empty if none makes it: walls that share their steps have gone
-  /// different distances, or the model has no walls.
+  /// different distances, a step that follows a table or a sine, or the model has no walls.
   [[nodiscard]] const std::vector<std::string>& overrides() const noexcept { return overrides_; }
 
  private:
@@ -81,10 +81,13 @@ class DisplacementProgram {
   /// Marks steps that prescribe a force or a stress, hold one, or end by a condition.
   void mark(const std::vector<Step>& program) {
     bool is_force = false;
-    for (std::size_t k = 0; k < std::min(program.size(), ends_.size()); ++k) {
-      const auto control = control_of(program[k].kind);
+    std::size_t number = 0;
+    for (const Step& step : program) {
+      if (step.leg.is_first()) ++number;
+      has_legs_ = has_legs_ || !step.leg.is_last();
+      const auto control = control_of(step.kind);
       if (control) is_force = *control == Control::force || *control == Control::stress;
-      if (is_force || !program[k].until.empty()) is_replaced_[k] = true;
+      if (number <= ends_.size() && (is_force || !step.until.empty())) is_replaced_[number - 1] = true;
     }
   }
 
@@ -143,6 +146,7 @@ class DisplacementProgram {
   const Table& history_;
   Scene scene_;
   std::vector<std::size_t> ends_;  ///< last row of each step
+  bool has_legs_ = false;          ///< a step follows a table or a sine
   std::vector<bool> is_replaced_;
   std::vector<std::size_t> replaced_;
   std::vector<std::string> overrides_;
@@ -153,8 +157,12 @@ std::vector<std::size_t> displacement_steps(const CheckedScenario& scenario, std
   std::vector<std::size_t> steps;
   const Scene scene = make_scene(scenario);
   for (const Channel& channel : scene.channels) {
-    for (std::size_t k = 0; channel.name == contact_class && k < channel.program.size(); ++k) {
-      if (channel.program[k].kind == Step::Kind::displacement) steps.push_back(k + 1);
+    if (channel.name != contact_class) continue;
+    std::size_t number = 0;
+    for (const Step& step : channel.program) {
+      if (!step.leg.is_first()) continue;
+      ++number;
+      if (step.kind == Step::Kind::displacement) steps.push_back(number);
     }
   }
   return steps;

@@ -596,6 +596,7 @@ class SweepReader {
       try {
         const CheckedScenario scenario = scenario_with(*scenario_, factors, runs_[run]);
         for (const auto& [option, curve] : scenario.curves) digested_ += '\n' + curve.text;
+        for (const auto& [name, text] : scenario.loading.files) digested_ += '\n' + text;
         // Runs with other words, such as another configuration, may have other columns.
         if (std::ranges::all_of(factors_, &Factor::is_number)) sweep::check_columns(columns_, scenario, faults_);
         if (bands_) sweep::check_columns(bands_->columns, scenario, faults_);

@@ -1,0 +1,194 @@
+#include "scenario/course_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "scenario/cells.hpp"
+#include "scenario/measured_data.hpp"
+#include "scenario/text_file.hpp"
+#include "scenario/units.hpp"
+#include "scenario/words.hpp"
+
+namespace monograin {
+namespace {
+
+constexpr int k_ramps_per_quarter =
+    16;  // of a sine; a ramp of 1/64 cycle is within 1 - cos(pi/64) = 0.12 % of the amplitude
+constexpr int k_ramps_per_cycle = 4 * k_ramps_per_quarter;
+
+/// Instant of a course and the value there [SI].
+struct Point {
+  double time = 0.0;
+  double value = 0.0;
+  bool is_corner = true;
+};
+
+/// Ramps from point to point. The first point is that of time 0, without a value where the course begins with a ramp.
+std::vector<Step> ramps_through(const std::vector<Point>& points, std::optional<double> start) {
+  std::vector<Step> ramps;
+  Point last;
+  for (const Point& point : points) {
+    Step& ramp = ramps.emplace_back();
+    ramp.target = point.value;
+    ramp.duration = point.time - last.time;
+    ramp.leg = {last.time / points.back().time, point.time / points.back().time, last.is_corner};
+    last = point;
+  }
+  if (!ramps.empty()) ramps.front().start = start;
+  return ramps;
+}
+
+/// sin(2 pi k / k_ramps_per_cycle), with equal digits in every quarter, and 0 and 1 exactly.
+double sine_at(int k) {
+  const int within = k % k_ramps_per_quarter;
+  const int quarter = k / k_ramps_per_quarter % 4;
+  const int rising = quarter % 2 == 0 ? within : k_ramps_per_quarter - within;
+  const double sine = std::sin(std::numbers::pi / 2.0 * rising / k_ramps_per_quarter);
+  return quarter < 2 ? sine : 0.0 - sine;
+}
+
+std::vector<Step> read_sine(Reading& reading, const Section& course, const CourseForm& form) {
+  if (!course.has_table("sine")) return {};
+  const Section sine(reading, course.table("sine", "sine"), form.in_sine);
+  const auto mean = sine.number("mean");
+  const auto amplitude = sine.number("amplitude");
+  const auto frequency = sine.number("frequency");
+  const auto cycles = sine.number("cycles");
+  if (!mean || !amplitude || !frequency || !cycles) return {};
+  if (*cycles * k_ramps_per_cycle > k_most_steps) {
+    reading.faults.add(sine.value_place("cycles"),
+                       fmt::format("cycles = {}: expected at most {}, {} ramps each", *cycles,
+                                   k_most_steps / k_ramps_per_cycle, k_ramps_per_cycle));
+    return {};
+  }
+  std::vector<Point> points;
+  for (int k = 1; k <= static_cast<int>(*cycles) * k_ramps_per_cycle; ++k) {
+    const bool is_turn = k % (2 * k_ramps_per_quarter) == k_ramps_per_quarter;
+    points.push_back({k / (k_ramps_per_cycle * *frequency), *mean + *amplitude * sine_at(k), is_turn});
+  }
+  return ramps_through(points, *mean);
+}
+
+/// Reads a table of a file.
+class TableReader {
+ public:
+  TableReader(Reading& reading, const Section& course, const KeySpec& value)
+      : reading_(reading), course_(course), value_(value), name_(course.text("table")) {}
+
+  std::vector<Step> read(FileTexts& files) {
+    const FileText file = text_of_file(reading_, name_, k_largest_text);
+    if (!file.problem.empty()) return fault_of_name(file.problem);
+    if (file.text.size() > k_largest_text) {
+      return fault_of_name(fmt::format("the file is larger than {} MiB", k_largest_text >> 20U));
+    }
+    files.insert_or_assign(name_, file.text);
+    const std::size_t before = reading_.faults.size();
+    data_ = parse_measured(file.text, origin_, {request("time"), request("value")}, reading_.faults);
+    if (reading_.faults.size() > before) return {};
+    const auto to_seconds = factor_of(0, Dimension::time);
+    const auto to_si = factor_of(1, value_.dimension);
+    if (!to_seconds || !to_si) return {};
+    std::vector<Point> points = points_of(*to_seconds, *to_si);
+    if (reading_.faults.size() > before) return {};
+    std::optional<double> start;
+    if (points.front().time == 0.0) {
+      start = points.front().value;
+      points.erase(points.begin());
+    }
+    if (!points.empty()) return ramps_through(points, start);
+    fault(0, 0, "the table ends where it begins; expected a later row");
+    return {};
+  }
+
+ private:
+  [[nodiscard]] ColumnRequest request(std::string_view key) const {
+    return {course_.text(key), course_.value_place(key), fmt::format("{} = \"{}\"", key, shown(course_.text(key)))};
+  }
+
+  std::vector<Step> fault_of_name(const std::string& problem) {
+    reading_.faults.add(course_.value_place("table"),
+                        fmt::format("table = \"{}\": {} ({}); expected a table with a row of headings, such as "
+                                    "t[s],x[mm], its path relative to the scenario's folder",
+                                    shown(name_), problem, on_one_line(origin_)));
+    return {};
+  }
+
+  /// SI value of a column's unit; a column without one is in SI units.
+  std::optional<double> factor_of(std::size_t column, Dimension dimension) {
+    const std::string& unit = data_.columns[column].unit;
+    if (unit.empty()) return 1.0;
+    const ParsedQuantity one = parse_quantity("1 " + unit, dimension, reading_.initial_radius);
+    if (one.value) return one.value;
+    reading_.faults.add(place_of_unit(data_.columns[column]),
+                        fmt::format("column '{}': {}", shown(data_.columns[column].heading), one.problem));
+    return std::nullopt;
+  }
+
+  [[nodiscard]] SourceLocation place_of_unit(const MeasuredColumn& column) const {
+    const std::size_t number = std::max(data_.layout.heading_line, data_.layout.unit_line);
+    std::string_view rest = data_.text;
+    std::string_view line;
+    for (std::size_t k = 0; k < number; ++k) line = take_line(rest);
+    return {origin_, number, cells_of(line, data_.layout.separator)[column.number - 1].column};
+  }
+
+  std::vector<Point> points_of(double to_seconds, double to_si) {
+    const Range times = plausible_range(Dimension::time, k_not_negative);
+    const Range values = finite_range(value_);
+    std::vector<Point> points;
+    for (std::size_t row = 0; row < data_.lines.size() && found_ < k_most_table_faults; ++row) {
+      const Point point{data_.columns[0].values[row] * to_seconds, data_.columns[1].values[row] * to_si};
+      check_range(row, 0, point.time, Dimension::time, times);
+      check_range(row, 1, point.value, value_.dimension, values);
+      if (!points.empty() && !(point.time > points.back().time)) {
+        fault(row, 0, fmt::format("{:.9g} s: not later than the row before; expected ascending times", point.time));
+      }
+      points.push_back(point);
+    }
+    return points;
+  }
+
+  void check_range(std::size_t row, std::size_t column, double value, Dimension dimension, const Range& range) {
+    if (range.contains(value)) return;
+    fault(row, column,
+          fmt::format("{} = {:.9g}: out of range; expected {}", shown(data_.columns[column].heading), value,
+                      describe(dimension, range)));
+  }
+
+  void fault(std::size_t row, std::size_t column, std::string message) {
+    ++found_;
+    reading_.faults.add({origin_, data_.lines[row], data_.columns[column].at[row]}, std::move(message));
+  }
+
+  Reading& reading_;
+  const Section& course_;
+  const KeySpec& value_;
+  std::string name_;
+  std::string origin_ = (reading_.folder / name_).string();
+  MeasuredData data_;
+  std::size_t found_ = 0;
+};
+
+}  // namespace
+
+std::vector<Step> read_course(Reading& reading, const Section& step, const StepForm& form, FileTexts& files) {
+  const std::string label(form.key);
+  const Section::Origin origin = step.table(form.key, label);
+  const CourseForm& course = *form.course;
+  std::vector<std::string_view> names = names_of(course.table);
+  names.emplace_back("sine");
+  const auto is_sine = [&](const auto& entry) { return nearest_word(entry.first.str(), names) == "sine"; };
+  if (std::ranges::any_of(*origin.table, is_sine))
+    return read_sine(reading, Section(reading, origin, course.sine, course.foreign_to_sine), course);
+  const Section table(reading, origin, course.table);
+  if (table.text("table").empty() || table.text("time").empty() || table.text("value").empty()) return {};
+  return TableReader(reading, table, form.keys.front()).read(files);
+}
+
+}  // namespace monograin
