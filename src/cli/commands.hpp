@@ -44,6 +44,7 @@ void add_run_command(CLI::App& app, Action& action);
 void add_check_command(CLI::App& app, Action& action);
 void add_models_command(CLI::App& app, Action& action);
 void add_cite_command(CLI::App& app, Action& action);
+void add_units_command(CLI::App& app, Action& action);
 void add_plot_command(CLI::App& app, Action& action);
 void add_atlas_command(CLI::App& app, Action& action);
 void add_compare_command(CLI::App& app, Action& action);

@@ -185,6 +185,7 @@ int run_program(int argc, char** argv) {
   add_check_command(app, action);
   add_models_command(app, action);
   add_cite_command(app, action);
+  add_units_command(app, action);
   add_plot_command(app, action);
   add_atlas_command(app, action);
   add_compare_command(app, action);

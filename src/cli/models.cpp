@@ -1,4 +1,4 @@
-// `monograin models`, `monograin cite` and `monograin schema`.
+// `monograin models`, `monograin cite`, `monograin units` and `monograin schema`.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -136,6 +136,20 @@ int run_cite(const std::vector<std::string>& names) {
   return k_success;
 }
 
+/// Prints the units of every dimension, that of a bare number first.
+int run_units() {
+  print_data("{:<17}{:<11}{}\n", "dimension", "bare in", "units");
+  for (const DimensionInfo& info : dimensions()) {
+    if (info.units.empty()) continue;
+    std::vector<std::string_view> symbols;
+    for (const Unit& unit : info.units) symbols.push_back(unit.symbol);
+    if (!info.relative.empty()) symbols.push_back(info.relative);
+    const std::string_view noun = info.noun.substr(info.noun.find(' ') + 1);
+    print_data("{:<17}{:<11}{}\n", noun, info.si, fmt::join(symbols, ", "));
+  }
+  return k_success;
+}
+
 int run_models(const ModelsOptions& options) {
   if (!options.scene.empty()) return show_laws_for(options.scene);
   const Model* model = options.name.empty() ? nullptr : &model_named(options.name);
@@ -186,6 +200,12 @@ void add_cite_command(CLI::App& app, Action& action) {
   command->add_option("NAME", *names, "Models; all of them if none is named");
   command->footer("Example: monograin cite mdr > mdr.bib");
   command->callback([names, &action] { action = [names] { return run_cite(*names); }; });
+}
+
+void add_units_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("units", "Print the units understood, by dimension");
+  command->footer("Example: monograin units");
+  command->callback([&action] { action = run_units; });
 }
 
 void add_schema_command(CLI::App& app, Action& action) {

@@ -3,7 +3,7 @@
 _monograin() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} options
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "run check models cite plot atlas compare regress calibrate design data sweep sensitivity bench stress schema --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "run check models cite units plot atlas compare regress calibrate design data sweep sensitivity bench stress schema --help --version" -- "$current")
     return
   fi
   if [[ $previous == models ]]; then

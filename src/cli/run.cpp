@@ -1,4 +1,4 @@
-// `monograin run` and `monograin check`.
+// `monograin run`.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,7 +13,6 @@
 #include "cli/terminal.hpp"
 #include "figure/figure.hpp"
 #include "history/run_files.hpp"
-#include "scenario/remarks.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
@@ -160,29 +159,6 @@ void add_run_command(CLI::App& app, Action& action) {
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
   command->footer("Example: monograin run scenarios/die.toml --set loading.steps[0].displacement='0.3 R0' --plot");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
-}
-
-void add_check_command(CLI::App& app, Action& action) {
-  auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("check", "Check scenario files without running them");
-  command->add_option("FILE", options->files, "Scenario files (TOML)")->required();
-  command->add_option("--set", options->overrides, "Override a key: key=value")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
-  command->footer("Example: monograin check scenarios/die.toml");
-  command->callback([options, &action] {
-    action = [options] {
-      for (const Job& job : read_jobs(*options)) {
-        std::vector<std::string> remarks = remarks_on(job.scenario);
-        if (auto remark = remark_on_times(job.scenario)) remarks.push_back(std::move(*remark));
-        for (const std::string& remark : remarks) {
-          fmt::print(stderr, "{}: warning: {}\n", job.scenario.name, remark);
-        }
-      }
-      return static_cast<int>(k_success);
-    };
-  });
 }
 
 }  // namespace monograin

@@ -89,7 +89,7 @@ RunRecord record_with(Recorder& recorder, Scene& scene, std::string_view integra
 /// @throws ScenarioError if the scenario asks for a direct solution, and the scene has none
 IntegratorChoice integrator_of(const CheckedScenario& scenario, const HybridSystem& system) {
   if (scenario.numerics.integrator == integrators::k_direct && !system.is_solvable()) {
-    throw_fault({scenario.name},
+    throw_fault(scenario.numerics.integrator_place,
                 "integrator = \"direct\": the state of this scene depends on the path to it, which no "
                 "equation replaces; expected auto, or an integrator that follows the path");
   }
@@ -124,6 +124,11 @@ std::string scenario_digest(const CheckedScenario& scenario) {
   for (const auto& [option, curve] : scenario.curves) text += "\n--file " + option + '\n' + curve.text;
   for (const auto& [name, content] : scenario.loading.files) text += "\n--program " + name + '\n' + content;
   return text_digest(text);
+}
+
+void check_integrator(const CheckedScenario& scenario) {
+  // Any other integrator suits every scene.
+  if (scenario.numerics.integrator == integrators::k_direct) integrator_of(scenario, *make_scene(scenario).system);
 }
 
 RunRecord record_run(Scene& scene, std::string_view integrator, const Tolerances& tolerances, const Output& output) {

@@ -44,6 +44,10 @@ struct LeftOut {
                                    const Output& output, ForwardSensitivities& sensitivities,
                                    const std::vector<Column>& columns);
 
+/// Checks that the integrator of a scenario suits its scene.
+/// @throws ScenarioError if it asks for a direct solution, and the scene has none
+void check_integrator(const CheckedScenario& scenario);
+
 /// A contact class and the names of its walls.
 struct ClassSummary {
   std::string name;

@@ -167,22 +167,36 @@ toml::table parse_document(std::string_view text, const std::string& origin) {
   }
 }
 
-void expect_kind(const toml::table& root, const std::string& origin, std::string_view own) {
-  struct Kind {
-    std::string_view key;
-    std::string_view noun;
-    std::string_view command;
-  };
-  constexpr std::array<Kind, 4> k_kinds{{{"model", "a scenario", "run"},
-                                         {"vary", "a sweep", "sweep"},
-                                         {"program", "a plan of experiments", "design"},
-                                         {"data", "a calibration", "calibrate"}}};
-  if (root.contains(own)) return;
-  const auto found = std::ranges::find_if(k_kinds, [&](const Kind& kind) { return root.contains(kind.key); });
-  if (found == k_kinds.end()) return;
-  const auto* expected = std::ranges::find(k_kinds, own, &Kind::key);
-  throw_fault({origin},
-              fmt::format("this is {}, for 'monograin {}'; expected {}", found->noun, found->command, expected->noun));
+const DocumentKind& kind_of(DocumentType type) {
+  static const std::array<DocumentKind, 5> kinds{{
+      {"a scenario", "run", {"model"}},
+      {"a sweep", "sweep", {"vary", "design"}},
+      {"a plan of experiments", "design", {"program"}},
+      {"a calibration", "calibrate", {"data"}},
+      {"a figure definition", "atlas", {"panel", "table", "values", "adhesion_map"}},
+  }};
+  return kinds[static_cast<std::size_t>(type)];
+}
+
+std::optional<DocumentType> type_of(const toml::table& root) {
+  using enum DocumentType;
+  for (const DocumentType type : {scenario, sweep, experiment_plan, calibration, figure}) {
+    // A sweep may have a key `table` as well, the name of a file.
+    const auto shows_type = [&](std::string_view key) {
+      return root.contains(key) && (type != figure || !root[key].is_string());
+    };
+    if (std::ranges::any_of(kind_of(type).keys, shows_type)) return type;
+  }
+  return std::nullopt;
+}
+
+void expect_type(const toml::table& root, const std::string& origin, DocumentType own) {
+  const auto is_there = [&](std::string_view key) { return root.contains(key); };
+  if (std::ranges::any_of(kind_of(own).keys, is_there)) return;
+  const std::optional<DocumentType> type = type_of(root);
+  if (!type) return;
+  throw_fault({origin}, fmt::format("this is {}, for 'monograin {}'; expected {}", kind_of(*type).noun,
+                                    kind_of(*type).command, kind_of(own).noun));
 }
 
 SourceLocation place_of(const toml::source_region& region, const SourceLocation& fallback) {

@@ -176,6 +176,7 @@ void read_output(Reading& reading, const Section& root, const Language& language
 void read_numerics(Reading& reading, const Section& root, const Language& language, CheckedScenario& scenario) {
   const Section numerics(reading, root.table("numerics", "[numerics]"), language.numerics);
   scenario.numerics.integrator = numerics.text("integrator");
+  scenario.numerics.integrator_place = numerics.value_place("integrator");
   scenario.numerics.rtol = numerics.number("rtol").value_or(0.0);
   scenario.numerics.atol = numerics.number("atol").value_or(0.0);
 }

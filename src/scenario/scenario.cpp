@@ -36,7 +36,7 @@ toml::table parse_table(std::string_view text, std::string_view key, const std::
 toml::table tree_of(const ScenarioSource& source, const std::vector<std::string>& overrides, FaultList& faults) {
   toml::table root = source.table.empty() ? parse_document(source.text, source.origin)
                                           : parse_table(source.text, source.table, source.origin);
-  if (source.table.empty()) expect_kind(root, source.origin, "model");
+  if (source.table.empty()) expect_type(root, source.origin, DocumentType::scenario);
   for (const std::string& override_text : overrides) apply_override(root, override_text, faults);
   return root;
 }

@@ -93,6 +93,7 @@ struct Numerics {
   std::string integrator = integrators::k_auto;
   double rtol = integrators::k_default_rtol;
   double atol = integrators::k_default_atol;  ///< relative to the state's own scale
+  SourceLocation integrator_place{};
 };
 
 class ScenarioTemplate;

@@ -128,6 +128,8 @@ std::string unknown_unit(std::string_view symbol, const DimensionInfo& info) {
 
 }  // namespace
 
+std::span<const DimensionInfo> dimensions() noexcept { return k_dimensions; }
+
 const DimensionInfo& dimension_info(Dimension dimension) noexcept {
   return *std::ranges::find(k_dimensions, dimension, &DimensionInfo::dimension);
 }

@@ -27,6 +27,9 @@ struct DimensionInfo {
   std::span<const Unit> units;
 };
 
+/// All dimensions, a pure number first.
+[[nodiscard]] std::span<const DimensionInfo> dimensions() noexcept;
+
 [[nodiscard]] const DimensionInfo& dimension_info(Dimension dimension) noexcept;
 
 /// SI unit of a dimension as headings and lists have it: "-" for a pure number.

@@ -518,8 +518,8 @@ TEST_F(Commands, RunLeavesTheReferencesOfTheModel) {
 }
 
 TEST_F(Commands, HelpEndsWithAnExample) {
-  for (const char* command : {"", "run", "check", "models", "cite", "plot", "atlas", "compare", "regress", "calibrate",
-                              "design", "data", "sweep", "schema"}) {
+  for (const char* command : {"", "run", "check", "models", "cite", "units", "plot", "atlas", "compare", "regress",
+                              "calibrate", "design", "data", "sweep", "schema"}) {
     const Outcome help = monograin(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Example: monograin "), std::string::npos) << command;

@@ -48,6 +48,7 @@ class DefinitionReader {
   [[nodiscard]] Definition read() {
     text_ = contents();
     const toml::table tree = parse_document(text_, file_.string());
+    expect_type(tree, file_.string(), DocumentType::figure);
     const Keys keys = root_keys();
     const SourceLocation top{file_.string()};
     const Section root(reading_, {&tree, top, "the definition"}, keys);

@@ -42,7 +42,7 @@ class CalibrationReader {
 
   Calibration read() {
     const toml::table tree = parse_document(made_.text, made_.file);
-    expect_kind(tree, made_.file, "data");
+    expect_type(tree, made_.file, DocumentType::calibration);
     const bool scenario_is_table = tree["scenario"].is_table();
     const Keys keys = root_keys(scenario_is_table, tree["data"].is_array());
     const SourceLocation top{made_.file};

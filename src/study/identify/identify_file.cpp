@@ -98,7 +98,7 @@ class PlanReader {
   ExperimentPlan read() {
     made_.name = file_.stem().string();
     const toml::table tree = parse_document(text_, file_.string());
-    expect_kind(tree, file_.string(), "program");
+    expect_type(tree, file_.string(), DocumentType::experiment_plan);
     const bool scenario_is_table = tree["scenario"].is_table();
     const Keys keys = plan_keys(scenario_is_table);
     const std::vector<ForeignKey> foreign = keys_of_calibrations();

@@ -54,7 +54,7 @@ class SweepReader {
 
   [[nodiscard]] Sweep read() {
     const toml::table tree = parse_document(text_, file_.string());
-    expect_kind(tree, file_.string(), "vary");
+    expect_type(tree, file_.string(), DocumentType::sweep);
     digested_ = text_of_runs(tree);
     const std::vector<KeySpec> keys = sweep::root_keys(tree["scenario"].is_table());
     const SourceLocation top{file_.string()};
