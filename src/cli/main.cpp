@@ -29,10 +29,14 @@ int fail_for_memory() {
   return k_solver_failure;
 }
 
+std::atomic<bool> has_run_out_of_memory{false};
+
 int run_action(const Action& action) {
   try {
     return action();
   } catch (const ScenarioError& error) {
+    // A parser that lacks memory may take it for a fault of the text.
+    if (has_run_out_of_memory) return fail_for_memory();
     say("{}\n", error.what());
     return k_usage;
   } catch (const UsageError& error) {
@@ -157,8 +161,6 @@ bool names_no_command(const CLI::App& app, int argc, char** argv) {
   say("monograin: this version has no command '{}'; it has {}\n", shown(std::string_view(argv[1])), names_of(commands));
   return true;
 }
-
-std::atomic<bool> has_run_out_of_memory{false};
 
 /// Called if an allocation fails.
 [[noreturn]] void fail_allocation() {

@@ -168,7 +168,7 @@ void ProgramReader::read_targets(const Section& section, const StepForm& form, S
   step.target = is_pair ? (targets.empty() ? 0.0 : targets.front()) : section.number(form.key).value_or(0.0);
   std::string_view first;  // key that prescribes the lateral direction
   if (targets.size() == 2) {
-    step.lateral = {.kind = step.kind, .target = targets[1]};
+    step.lateral = {.kind = *form.kind, .target = targets[1]};
     first = form.key;
   }
   for (const DriveKey& key : form.lateral) {

@@ -31,11 +31,12 @@ std::vector<bool> may_end_early(std::span<const WallProgram> programs) {
 void check_start(const WallProgram& program, const Step& step, double present, std::string_view unit,
                  FaultList& faults) {
   if (is_same(*step.start, present)) return;
-  faults.add(step.where,
-             fmt::format("the table or sine begins at {:.9g} {}, where the wall is at {:.9g} {}{}; expected that value "
-                         "at the beginning, or a first row at a later time, to which a ramp leads",
-                         *step.start, unit, present, unit,
-                         program.wall.empty() ? "" : fmt::format(" (wall '{}')", program.wall)));
+  faults.add(
+      step.where,
+      fmt::format("the table or sine begins at {:.9g} {}, where the wall is at {:.9g} {}{}; expected a step before "
+                  "it that leads there, or a first row of the table at a later time",
+                  *step.start, unit, present, unit,
+                  program.wall.empty() ? "" : fmt::format(" (wall '{}')", program.wall)));
 }
 
 /// Durations of the steps of a program. Reports tables that begin elsewhere than their wall is.
@@ -75,7 +76,7 @@ class Comparison {
   Comparison(const WallProgram& first, const WallProgram& other, FaultList& faults)
       : first_(first), other_(other), faults_(faults) {}
 
-  /// True if the programs have equally many steps, divided in the same way.
+  /// True if the programs have equally many steps, divided at the same times.
   bool check_steps() {
     if (const auto [a, b] = std::pair(count_steps(other_.steps), count_steps(first_.steps)); a != b) {
       faults_.add(other_.where, fmt::format("wall '{}' has {} steps where wall '{}' has {}; expected equal numbers",

@@ -207,13 +207,6 @@ TEST_F(Commands, AKillAtAnyMomentLeavesTheLastGoodResult) {
   }
 }
 
-TEST_F(Commands, CheckSaysNothingOfAGoodFile) {
-  write_text(path("small.toml"), k_small);
-  const Outcome outcome = monograin("check small.toml");
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_TRUE(outcome.out.empty() && outcome.err.empty()) << outcome.out << outcome.err;
-}
-
 TEST_F(Commands, ModelsForAScenarioSayWhichLawsCanRunItAndHowFarTheyAreOff) {
   write_text(path("small.toml"), std::string(k_small) + "[mdr]\nstrict = true\n");
   const auto before = files();

@@ -35,7 +35,7 @@ TEST_F(StressCommand, ChecksAScenarioThatIsGiven) {
 }
 
 TEST_F(StressCommand, ExitsWithFourWhereARuleIsBroken) {
-  // The walls of the class need different times: the run stops, and that is no limit of the model.
+  // The walls need different times, which only a run shows: the run stops, and that is no limit of the model.
   write_text(path("faulty.toml"), R"(model = "hertz"
 particle = { radius = 1 }
 material = { youngs_modulus = 1, poisson_ratio = 0.3 }
@@ -44,11 +44,11 @@ configuration = "walls"
 [[loading.wall]]
 name = "a"
 normal = [0, 0, 1]
-steps = [{ displacement = 0.1, rate = 0.1 }]
+steps = [{ force = 0.1, duration = 1 }, { displacement = 0.1, rate = 0.1 }]
 [[loading.wall]]
 name = "b"
 normal = [1, 0, 0]
-steps = [{ displacement = 0.2, rate = 0.1 }]
+steps = [{ displacement = 0.2, rate = 0.2 }, { hold = true, duration = 7 }]
 )");
   EXPECT_EQ(monograin("stress faulty.toml").code, 4);
   EXPECT_NE(text("stdout.txt").find("unstated-limit"), std::string::npos) << text("stdout.txt");

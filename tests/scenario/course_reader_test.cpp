@@ -138,8 +138,8 @@ TEST(Table, BeginsWhereTheWallIs) {
   const std::string table = "t[s],x[mm]\n0,0.5\n1,1\n";
   EXPECT_EQ(
       faults(with_displacement(k_table), table),
-      Lines{"die.toml:12:1: the table or sine begins at 0.0005 m, where the wall is at 0 m; expected that value at "
-            "the beginning, or a first row at a later time, to which a ramp leads"});
+      Lines{"die.toml:12:1: the table or sine begins at 0.0005 m, where the wall is at 0 m; expected a step before "
+            "it that leads there, or a first row of the table at a later time"});
   const std::string ramp = "{ displacement = \"0.5 mm\", duration = 1 },\n";
   EXPECT_EQ(faults(with_displacement(k_table, ramp), table), Lines{});
   // What a condition leaves is known in a run only.

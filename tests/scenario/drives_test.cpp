@@ -46,6 +46,18 @@ TEST(Drives, AreReadWithTheirUnitsAndDefaults) {
   EXPECT_FALSE(scenario.options.contains("initial_packing_fraction"));
 }
 
+TEST(Drives, MayPrescribeBothDirectionsByAPair) {
+  const CheckedScenario scenario = parse_scenario(
+      "model = \"material-point\"\n[material]\nyield_model = \"vm\"\npreset = \"MCC PH-200\"\n[loading]\n"
+      "configuration = \"strain-path\"\nsteps = [{ strain = [-0.1, -0.02], duration = 1 }]\n",
+      "a.toml");
+  const Step& step = scenario.loading.steps.front();
+  EXPECT_EQ(step.target, -0.1);
+  ASSERT_TRUE(step.lateral);
+  EXPECT_EQ(step.lateral->kind, Step::Kind::strain);
+  EXPECT_EQ(step.lateral->target, -0.02);
+}
+
 TEST(Drives, HaveNoKeysOfWalls) {
   EXPECT_EQ(faults_of("model = \"packing\"\n[particle]\nradius = 1\n[loading]\nconfiguration = \"die\"\n"
                       "[[loading.steps]]\ndisplacement = 0.1\nduration = 1\n[[loading.steps]]\ndetach = true\n"
