@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -399,9 +400,11 @@ std::vector<double> list_of(const Numbers& numbers) {
 py::tuple mdr_peel_curve(const Numbers& radii, const Numbers& heights, double composite_modulus, double surface_energy,
                          const std::string& control, std::size_t count) {
   require_positive({{"modulus", composite_modulus}, {"surface_energy", surface_energy}});
-  const std::vector<mdr::PeelState> states =
-      mdr::peel_curve(mdr::RelaxedProfile(list_of(radii), list_of(heights)), composite_modulus, surface_energy,
-                      control_named(control), count);
+  const Control controlled = control_named(control);
+  const mdr::RelaxedProfile profile(list_of(radii), list_of(heights));
+  const std::vector<mdr::PeelState> states = run_interruptibly([&](const std::atomic<bool>&) {
+    return mdr::peel_curve(profile, composite_modulus, surface_energy, controlled, count);
+  });
   const auto column = [&](double mdr::PeelState::*value) {
     Array array(static_cast<py::ssize_t>(states.size()));
     std::ranges::transform(states, array.mutable_data(), value);

@@ -15,6 +15,7 @@
 #include "interruptible.hpp"
 #include "monograin/run.hpp"
 #include "scenario/edit.hpp"
+#include "scenario/file_keys.hpp"
 #include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
 #include "study/atlas/profile.hpp"
@@ -44,19 +45,12 @@ SoundScenario with_origin(const SoundScenario& scenario, std::string origin) {
   return placed;
 }
 
-/// Name of a file as the scenario has it.
-std::string name_of(const SoundScenario& scenario, const std::string& option) {
-  return std::get<std::string>(scenario.checked.options.at(option));
-}
-
 /// The scenario as text, with its overrides.
-/// @param file_of  (option, curve) -> what stands for the name of its file
-template <class FileOf>
-std::string text_of(const SoundScenario& scenario, FileOf&& file_of) {
+/// @param value_of  FileKey -> what stands for the name of the file
+template <class ValueOf>
+std::string text_of(const SoundScenario& scenario, ValueOf&& value_of) {
   Scenario placed = scenario.source;
-  for (const auto& [option, curve] : scenario.checked.curves) {
-    placed.set(scenario.checked.model + '.' + option, file_of(option, curve));
-  }
+  for (const FileKey& key : file_keys(scenario.checked)) placed.set(key.path, value_of(key));
   return text_with_overrides(placed.text(), placed.overrides());
 }
 
@@ -65,15 +59,12 @@ std::string text_of(const SoundScenario& scenario, FileOf&& file_of) {
 std::string toml_of(const SoundScenario& scenario) {
   const bool is_in_memory = scenario.source.files().has_value();
   const std::filesystem::path folder = std::filesystem::path(scenario.source.origin()).parent_path();
-  return text_of(scenario, [&](const std::string& option, const SampledCurve&) {
-    const std::string name = name_of(scenario, option);
-    return is_in_memory ? name : (folder / name).string();
-  });
+  return text_of(scenario, [&](const FileKey& key) { return is_in_memory ? key.name : (folder / key.name).string(); });
 }
 
-/// The scenario as text, with its overrides, and with the content of each file in the place of its name.
+/// The scenario as text, with its overrides, and with the digest of each file's text in the place of its name.
 std::string content_of(const SoundScenario& scenario) {
-  return text_of(scenario, [](const std::string&, const SampledCurve& curve) { return curve.text; });
+  return text_of(scenario, [](const FileKey& key) { return text_digest(key.text); });
 }
 
 SoundScenario read_sound(const std::string& file) {

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 # Colours of Okabe and Ito, which colour-blind readers can distinguish.
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 _STYLES = {"loading": "-", "unloading": "--", "reloading": ":"}
+# Each event has the next symbol, colour and size. Events at one point remain visible, as their sizes differ.
+_SYMBOLS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h")
+_SIZES = (5.0, 7.0, 9.0)
+# Begin of the name that the marks of an event have within a figure.
+_EVENT = "event "
 # Events that are not marked, because the curve itself shows the corners of the program.
 _PROGRAM_EVENTS = ("step-end", "until-met")
 
@@ -28,6 +33,12 @@ class _Panel(NamedTuple):
     columns: list[tuple[str, str]]  # legend and column of each curve
     scale: float  # divides the values
     is_area: bool = False  # true: the panel shows pi times the square of the column
+
+
+class _Mark(NamedTuple):
+    symbol: str
+    colour: str
+    size: float
 
 
 class _Sheet(NamedTuple):
@@ -66,16 +77,17 @@ def of_run(
     if sheet is None or not panels or len(run) < 2:
         raise ValueError("the run has no curve to draw")
     places = _places(axes, len(panels))
-    for place, panel in zip(places, panels):
-        _draw(place, run, sheet, panel, _phases(path), label)
     figure: Figure = places[0].figure
+    marks = _marks(figure, run.events)
+    for place, panel in zip(places, panels):
+        _draw(place, run, sheet, panel, _phases(path), marks, label)
     return figure
 
 
-def of_fit(fit: Table, axes: Optional[Axes]) -> Figure:
+def of_fit(fit: Table, axes: Union[Axes, Sequence[Axes], None]) -> Figure:
     """Draws data, fit and confidence band; see :meth:`monograin.Calibration.plot`."""
     x, y = (fit[name] for name in fit.columns[:2])
-    (place,) = _places(axes, 1)
+    place = _places(axes, 1)[0]
     place.plot(x, y, "o", color="0.5", markersize=3, markerfacecolor="none", label="data")
     curves = fit["curve"] if "curve" in fit else np.zeros(len(fit))
     for k, curve in enumerate(np.unique(curves)):
@@ -108,7 +120,15 @@ def _places(axes: Union[Axes, Sequence[Axes], None], count: int) -> list[Axes]:
     return places
 
 
-def _draw(axes: Axes, run: Run, sheet: _Sheet, panel: _Panel, phases: list[tuple[str, slice]], label: str) -> None:
+def _draw(
+    axes: Axes,
+    run: Run,
+    sheet: _Sheet,
+    panel: _Panel,
+    phases: list[tuple[str, slice]],
+    marks: dict[str, _Mark],
+    label: str,
+) -> None:
     x = run[sheet.column] / sheet.scale
     # Curves that the axes show already keep their colours.
     used = len({line.get_color() for line in axes.lines if line.get_linestyle() != "None"})
@@ -122,18 +142,39 @@ def _draw(axes: Axes, run: Run, sheet: _Sheet, panel: _Panel, phases: list[tuple
         points = [
             (run.events[sheet.column][row] / sheet.scale, _values(run.events, panel, column)[row])
             for _, column in panel.columns
+            # Events lack some columns of a history, such as the number of a row.
+            if sheet.column in run.events and column in run.events
             for row in rows
             if _concerns(run.events, row, column)
         ]
         if points:
-            shown = next((line for line in axes.lines if line.get_label() == name), None)
-            colour = shown.get_color() if shown else None
-            text = None if shown else name
-            axes.plot(*zip(*points), "o", color=colour, markersize=4, markerfacecolor="none", label=text)
+            text = None if name in _marks_in([axes]) else name
+            symbol, colour, size = marks[name]
+            style = {"marker": symbol, "color": colour, "markersize": size, "linestyle": "None"}
+            axes.plot(*zip(*points), **style, markerfacecolor="none", label=text, gid=_EVENT + name)
     axes.set_xlabel(sheet.label)
     axes.set_ylabel(panel.label)
     if len(axes.get_legend_handles_labels()[1]) > 1:
         axes.legend(fontsize="small")
+
+
+def _marks(figure: Figure, events: Table) -> dict[str, _Mark]:
+    """Returns the mark of each event of a run, equal in all panels, and the marks that the figure has already."""
+    marks = _marks_in(figure.axes)
+    for name in _events(events):
+        count = len(marks)
+        colour = _COLOURS[-1 - count % len(_COLOURS)]
+        marks.setdefault(name, _Mark(_SYMBOLS[count % len(_SYMBOLS)], colour, _SIZES[count % len(_SIZES)]))
+    return marks
+
+
+def _marks_in(places: Sequence[Axes]) -> dict[str, _Mark]:
+    """Returns the mark of each event that axes show."""
+    lines = [line for place in places for line in place.lines if str(line.get_gid()).startswith(_EVENT)]
+    return {
+        line.get_gid().removeprefix(_EVENT): _Mark(line.get_marker(), line.get_color(), line.get_markersize())
+        for line in lines
+    }
 
 
 def _in_si(history: Table, x: str, panels: list[_Panel]) -> _Sheet:

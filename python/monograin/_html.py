@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from typing import Any, Iterable
 
-# A longer table shows as many rows at its begin and at its end, and as many columns at its begin.
+# A longer table shows this many of its first rows and of its last rows, and this many of its first columns.
 _ROWS = 5
 _COLUMNS = 12
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import collections.abc
 import difflib
 import functools
 import inspect
+import sys
 import typing
-from typing import Any, Callable, Iterable, Mapping, NoReturn, ParamSpec, TypeVar, Union
+from typing import Any, Callable, Iterable, Mapping, NoReturn, Optional, ParamSpec, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,36 +35,78 @@ def unknown(name: object, names: Iterable[str]) -> str:
     return f"there is no {name!r}; expected one of {', '.join(map(repr, known))}"
 
 
-def numbers(values: Any, name: str = "") -> NDArray[np.float64]:
-    """Returns numbers as an array of float. Elements that are masked, or missing as in pandas, are nan.
+def elements(values: Any, name: str = "") -> tuple[NDArray[Any], NDArray[np.bool_]]:
+    """Returns values as a plain array, and True for each element that is masked, None or ``pandas.NA``.
+
+    A single None or ``pandas.NA`` is a value like others. Texts in a list do not turn its other elements into texts.
 
     Args:
         values: a number, an array, or what numpy makes an array of.
         name: name of the values, with which messages begin.
 
     Raises:
-        TypeError: for texts, dates, complex numbers, None, and other things that are no real numbers, and for sequences
-            of unequal lengths.
+        TypeError: for sequences of unequal lengths.
     """
     masked: Any = np.ma
-    prefix = f"{name}: " if name else ""
-    is_pandas = hasattr(values, "isna") and hasattr(values, "to_numpy")
+    if hasattr(values, "isna") and hasattr(values, "to_numpy"):
+        return np.asarray(values.to_numpy()), np.asarray(values.isna())
     try:
-        array = values.to_numpy() if is_pandas else masked.getdata(values)
+        array = np.asarray(masked.getdata(values))
+        if array.dtype.kind in "SU" and not hasattr(values, "dtype"):
+            array = np.asarray(values, dtype=object)
     except ValueError:
-        raise TypeError(f"{prefix}expected numbers, not sequences of unequal lengths") from None
-    missing = np.asarray(values.isna()) if is_pandas else masked.getmaskarray(values)
+        raise TypeError(f"{_prefix(name)}expected numbers, not sequences of unequal lengths") from None
+    is_missing: NDArray[np.bool_] = np.array(masked.getmaskarray(values), dtype=bool)
+    if array.dtype.kind == "O" and array.ndim > 0:
+        absent = (None, getattr(sys.modules.get("pandas"), "NA", None))
+        cells = (any(cell is entry for entry in absent) for cell in array.ravel().tolist())
+        is_missing = is_missing | np.fromiter(cells, bool, array.size).reshape(array.shape)
+    return array, is_missing
+
+
+def numbers(values: Any, name: str = "") -> NDArray[np.float64]:
+    """Returns numbers as an array of float. Elements that are masked, None or ``pandas.NA`` are nan.
+
+    Args:
+        values: a number, an array, or what numpy makes an array of.
+        name: name of the values, with which messages begin.
+
+    Raises:
+        TypeError: for texts, dates, complex numbers, a single None or ``pandas.NA``, and other things that are no real
+            numbers, and for sequences of unequal lengths.
+    """
+    array, is_missing = elements(values, name)
     if array.dtype.kind in "SUMmcV":
-        raise TypeError(f"{prefix}expected real numbers, not {_kind(array) if array.ndim else _shown(values)}")
+        raise TypeError(f"{_prefix(name)}expected real numbers, not {_kind(array) if array.ndim else shown(values)}")
     if array.dtype.kind == "O":
-        if array.ndim > 0:
-            missing = missing | np.equal(array, np.array(None))
-        for value in array[~missing]:
-            if not _is_number(value):
-                raise TypeError(f"{prefix}expected real numbers, not {value!r}")
+        for value in array[~is_missing]:
+            if not is_real(value):
+                raise TypeError(f"{_prefix(name)}expected real numbers, not {value!r}")
     result: NDArray[np.float64] = np.full(array.shape, np.nan)
-    result[~missing] = array[~missing]
+    result[~is_missing] = array[~is_missing]
     return result
+
+
+def texts(values: Any, name: str) -> dict[str, str]:
+    """Returns texts by name as a dict.
+
+    Raises:
+        TypeError: for anything but a mapping from str to str.
+    """
+    if not isinstance(values, Mapping):
+        raise TypeError(f"{name}: expected texts by name, in a dict, not {shown(values)}")
+    for key, value in values.items():
+        if not isinstance(key, str) or not isinstance(value, str):
+            raise TypeError(f"{name}: expected texts by name, not {shown(value)} by {shown(key)}")
+    return dict(values)
+
+
+def is_real(value: Any) -> bool:
+    """Returns True for a single real number, of Python, numpy or another package. A text is none."""
+    dtype = getattr(value, "dtype", None)
+    if isinstance(dtype, np.dtype):
+        return np.ndim(value) == 0 and dtype.kind in "fiub"
+    return hasattr(value, "__float__") or hasattr(value, "__index__")
 
 
 def same(a: Any, b: Any) -> bool:
@@ -104,14 +148,23 @@ def _problem(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Mappin
     hints = typing.get_type_hints(function)
     for name, value in arguments.items():
         hint = hints.get(name, Any)
-        if hint == ArrayLike:
+        others = _beside_arrays(hint)
+        if others is not None and not any(_fits(value, other) for other in others):
             try:
                 numbers(value, name)
             except TypeError as error:
                 return str(error)
-        elif not _fits(value, hint):
-            return f"{name}: expected {_words(hint)}, not {_shown(value)}"
+        elif others is None and not _fits(value, hint):
+            return f"{name}: expected {_words(hint)}, not {shown(value)}"
     return ""
+
+
+def _beside_arrays(hint: Any) -> Optional[list[Any]]:
+    """Returns the types that an annotation admits beside ArrayLike, which is a union itself; None without ArrayLike."""
+    parts, arrays = typing.get_args(hint), set(typing.get_args(ArrayLike))
+    if typing.get_origin(hint) is not Union or not arrays <= set(parts):
+        return None
+    return [part for part in parts if part not in arrays]
 
 
 def _fits(value: Any, hint: Any) -> bool:
@@ -122,13 +175,17 @@ def _fits(value: Any, hint: Any) -> bool:
     if origin is Union:
         return any(_fits(value, part) for part in parts)
     if origin is float:
-        return _is_number(value)
+        return is_real(value)
     if origin is int:
-        return hasattr(value, "__index__")
+        return hasattr(value, "__index__") and is_real(value)
     if not inspect.isclass(origin):
+        return True
+    if origin is collections.abc.Sequence and hasattr(value, "__array__"):
         return True
     if not isinstance(value, origin):
         return False
+    if isinstance(value, Mapping) and len(parts) == 2 and _beside_arrays(parts[1]) is None:
+        return all(_fits(key, parts[0]) and _fits(entry, parts[1]) for key, entry in value.items())
     if isinstance(value, (list, tuple)) and parts:
         kinds = parts if origin is tuple else parts * len(value)
         return len(kinds) == len(value) and all(map(_fits, value, kinds))
@@ -145,13 +202,14 @@ def _words(hint: Any) -> str:
     return f"{name}[{parts}]" if parts else name
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
+    """Returns a value as messages show it; a long one by its type."""
     text = repr(value)
     return text if len(text) <= 40 and "\n" not in text else f"a {type(value).__name__}"
 
 
-def _is_number(value: Any) -> bool:
-    return hasattr(value, "__float__") or hasattr(value, "__index__")
+def _prefix(name: str) -> str:
+    return f"{name}: " if name else ""
 
 
 def _kind(array: NDArray[Any]) -> str:

@@ -138,7 +138,11 @@ class Prepared:
         given = list(names)
         if len(given) != len(self.keys) or set(given) != set(self.keys):
             raise ValueError(f"values for {', '.join(map(repr, given))}; expected the keys {', '.join(map(repr, self.keys))}")
-        return np.stack([numbers(values[key], f"{argument}: {key!r}") for key in self.keys], axis=-1)
+        columns = [numbers(values[key], f"{argument}: {key!r}") for key in self.keys]
+        if any(column.shape != columns[0].shape for column in columns):
+            shapes = ", ".join(f"{column.shape} for {key!r}" for key, column in zip(self.keys, columns))
+            raise ValueError(f"{argument} of shapes {shapes}; expected equal ones")
+        return np.stack(columns, axis=-1)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (Prepared, (self._scenario, self.keys))

@@ -12,7 +12,7 @@ from typing import Any, Callable, Iterable, Iterator, Mapping, Optional, Sequenc
 from numpy.typing import NDArray
 
 from . import _core, _toml
-from ._inputs import explained
+from ._inputs import explained, texts
 from ._optional import Axes, DataFrame, Figure
 from .errors import SolverError
 from .tables import Table
@@ -37,6 +37,7 @@ class Scenario:
     Raises:
         ScenarioError: with every fault of the scenario.
         TypeError: for the name of a file or of a ready scenario instead of a text.
+        ValueError: for a name in ``files`` that the scenario does not have.
 
     A scenario never changes, whatever the working directory later is. It can be pickled, and thus be sent to other
     processes. Scenarios are equal if all their keys and the files that they name have the same content; comments, names
@@ -63,8 +64,12 @@ class Scenario:
         if isinstance(overrides, str):
             raise TypeError(f"overrides: expected a list of texts, such as [{overrides!r}], not one str")
         text = source if isinstance(source, str) else _toml.document(source)
-        parsed = _core.Scenario.parse(text, os.fspath(origin), list(overrides), None if files is None else dict(files))
-        self._core = parsed.with_origin(os.path.abspath(origin))
+        changes = list(overrides)
+        known = None if files is None else texts(files, "files")
+        for name in known or ():
+            if not any(written in place for place in (text, *changes) for written in (name, _toml.text_of(name)[1:-1])):
+                raise ValueError(f"files: the scenario names no file {name!r}")
+        self._core = _parsed(text, os.fspath(origin), changes, known)
 
     @classmethod
     @explained
@@ -94,7 +99,7 @@ class Scenario:
         overrides = self.overrides
         for key, value in values.items():
             overrides = _core.with_override(overrides, f"{key}={_toml.text_of(value, key)}")
-        return Scenario(self.text, origin=self.origin, overrides=overrides, files=self.files)
+        return _made(_Source(self.text, self.origin, tuple(overrides), self.files))
 
     @property
     def name(self) -> str:
@@ -216,7 +221,8 @@ class Run:
 
     ``run["axial.force"]`` is a column of the history, see :class:`monograin.Table`. ``len(run)`` is its number of rows,
     and iteration yields its rows; ``in`` and ``keys`` are about its columns. A run can be pickled and copied. Runs are
-    equal if their scenarios, ends and tables are. A notebook shows the first and the last rows.
+    equal if their scenarios, ends and tables are; the name of the scenario does not count. A notebook shows the first
+    and the last rows.
     """
 
     __slots__ = ("_core", "_scenario", "_history", "_events")
@@ -347,9 +353,9 @@ class Run:
     ) -> Figure:
         """Draws force, mean pressure, contact area and apparent radius over the displacement of the driven wall.
 
-        Loading is solid, unloading dashed, reloading dotted; circles are events. A packing is drawn over its packing
-        fraction, a material point over its axial strain. Quantities are dimensionless if the header of the history has
-        their scales.
+        Loading is solid, unloading dashed, reloading dotted. Each event has one symbol and colour in all panels. A
+        packing is drawn over its packing fraction, a material point over its axial strain. Quantities are dimensionless
+        if the header of the history has their scales.
 
         A notebook shows the figure that the last line of a cell returns. In a loop, hand it to ``display`` of IPython.
         Several runs come into one figure by its axes:
@@ -384,7 +390,7 @@ class Run:
             folder: folder for the files, made if it does not exist. Files of an earlier run are replaced; others stay.
 
         Raises:
-            RuntimeError: if a file cannot be written, or the folder holds files but no run.
+            RuntimeError: if a file cannot be written, or the folder holds a file of the user with the name of a result.
             ValueError: for an empty name.
         """
         if not os.fspath(folder):
@@ -410,8 +416,10 @@ class Run:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Run):
             return NotImplemented
-        ends = [(run.status, run.message, run.limit, run.warnings, run.history, run.events) for run in (self, other)]
-        return ends[0] == ends[1] and self.scenario == other.scenario
+        ends = [(run.status, run.message, run.limit, run.warnings, _lines_of_content(run)) for run in (self, other)]
+        if ends[0] != ends[1] or self.scenario != other.scenario:
+            return False
+        return self.history._has_columns_of(other.history) and self.events._has_columns_of(other.events)
 
     def __hash__(self) -> int:
         return hash((self.status, self.history))
@@ -441,7 +449,20 @@ class _Source:
         return cls(scenario.text, scenario.origin, tuple(scenario.overrides), scenario.files)
 
     def __call__(self) -> Scenario:
-        return Scenario(self.text, origin=self.origin, overrides=self.overrides, files=self.files)
+        # A text in memory may keep files that replaced values no longer name.
+        scenario = Scenario.__new__(Scenario)
+        scenario._core = _parsed(self.text, self.origin, list(self.overrides), self.files)
+        return scenario
+
+
+def _parsed(text: str, origin: str, overrides: list[str], files: Optional[dict[str, str]]) -> _core.Scenario:
+    return _core.Scenario.parse(text, origin, overrides, files).with_origin(os.path.abspath(origin))
+
+
+def _lines_of_content(run: Run) -> list[dict[str, str]]:
+    """Returns the header lines of a run's tables, without those that comments or the name of the scenario change."""
+    headers = (run.history.header, run.events.header)
+    return [{key: line for key, line in header.items() if not key.startswith("scenario")} for header in headers]
 
 
 def _made(source: _Source) -> Scenario:

@@ -8,14 +8,14 @@ import json
 import os
 import types
 import warnings
-from typing import Any, Mapping, NamedTuple, Optional, Union
+from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, _html, _toml
 from ._core import Designed, Fitted
-from ._inputs import Named, explained, same
+from ._inputs import Named, explained, same, shown
 from ._optional import Axes, DataFrame, Figure
 from .runs import Path, Run, Scenario
 from .tables import Table
@@ -203,11 +203,12 @@ class Calibration(_Result):
         return copy.deepcopy(self._info)
 
     @explained
-    def plot(self, *, axes: Optional[Axes] = None) -> Figure:
+    def plot(self, *, axes: Union[Axes, Sequence[Axes], None] = None) -> Figure:
         """Draws the data, the fit and its confidence band, in SI units. A notebook shows the figure.
 
         Args:
-            axes: axes of matplotlib to draw into; None: those of a new figure, which pyplot does not manage.
+            axes: axes of matplotlib to draw into, of several the first; None: those of a new figure, which pyplot does
+                not manage.
 
         Raises:
             ImportError: if matplotlib is not installed.
@@ -463,7 +464,7 @@ def compare(
         RuntimeError: if the reference lacks a column that was named, or a file cannot be read. Curves without a common
             range are no error but a gap.
     """
-    curves, gaps = _core.compare_tables(_history(a)._core, _history(b)._core, x, y)
+    curves, gaps = _core.compare_tables(_history(a, "a")._core, _history(b, "b")._core, x, y)
     events_a, events_b = _events(a), _events(b)
     if not y and events_a is not None and events_b is not None:
         more_curves, more_gaps = _core.compare_events(events_a._core, events_b._core)
@@ -531,22 +532,26 @@ def _data_as_texts(source: Source) -> tuple[Source, dict[str, str]]:
 
 def _csv(data: Curves) -> str:
     """Returns the numbers of a table, or of arrays, as a CSV text."""
+    table = _history(data, "data")
     if isinstance(data, (Run, Table)):
-        return _history(data)._core.csv()
-    columns = [part for part in Table.from_columns(data)._core.parts() if not part[2]]
+        return table._core.csv()
+    columns = [part for part in table._core.parts() if not part[2]]
     headings = [f"{name}[{unit}]" if unit else name for name, unit, _, _ in columns]
     quoted = ['"' + heading.replace('"', '""') + '"' for heading in headings]
     rows = (["" if np.isnan(value) else repr(float(value)) for value in row] for row in zip(*(c[3] for c in columns)))
     return "".join(",".join(cells) + "\n" for cells in (quoted, *rows))
 
 
-def _history(source: Curves) -> Table:
+def _history(source: Curves, argument: str) -> Table:
+    """Returns the table of a run, of arrays or of a file. Messages name the argument."""
     if isinstance(source, Run):
         return source.history
     if isinstance(source, Table):
         return source
-    if not isinstance(source, (str, os.PathLike)):
+    if hasattr(source, "keys"):
         return Table.from_columns(source)
+    if not isinstance(source, (str, os.PathLike)):
+        raise TypeError(f"{argument}: expected a run, a table, a file, or arrays by name, not {shown(source)}")
     return Table.read_csv(os.path.join(source, "history.csv") if os.path.isdir(source) else source)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, _html
-from ._inputs import Named, explained, numbers, same, unknown
+from ._inputs import Named, elements, explained, is_real, numbers, same, texts, unknown
 from ._optional import DataFrame
 
 
@@ -57,27 +57,30 @@ class Table:
 
         Args:
             columns: arrays of shape (rows,) by name, as a dict or a ``pandas.DataFrame``. A name may have its unit behind
-                it (``"force[N]"``). Arrays of texts without a number become columns of words. Elements that are masked
-                or missing are nan.
+                it (``"force[N]"``). Arrays of texts without a number become columns of words; the text ``"nan"`` among
+                numbers is nan. Elements that are masked, None or ``pandas.NA`` are nan, and among words empty.
             units: units by the name of a column; if None, those that :meth:`to_pandas` gives a DataFrame.
 
         Raises:
             ValueError: for no arrays, arrays of different lengths, two columns of one name and unit, a unit of a column
-                that there is not, or a column that holds numbers and words.
-            TypeError: for columns that are no mapping, or an array of neither numbers nor texts.
+                that there is not, a unit other than that in the heading, or a column that holds numbers and words.
+            TypeError: for columns that are no mapping, units that are no texts by name, or an array of neither numbers nor
+                texts.
         """
         if not hasattr(columns, "keys"):
             raise TypeError(f"columns: expected arrays by name, in a dict or a DataFrame, not {type(columns).__name__}")
-        known = dict(getattr(columns, "attrs", {}).get("units", {}) if units is None else units)
+        known = getattr(columns, "attrs", {}).get("units", {}) if units is None else texts(units, "units")
         parts: list[_core.ColumnParts] = []
         for heading in columns.keys():
             name, bracket, unit = str(heading).removesuffix("]").partition("[")
             if not bracket or not str(heading).endswith("]"):
                 name, unit = str(heading), known.get(heading, "")
+            elif known.get(heading, unit) != unit:
+                raise ValueError(f"units: {known[heading]!r} for {heading!r}, whose heading has {unit!r}; expected one")
             if any(part[:2] == (name, unit) for part in parts):
                 raise ValueError(f"there are two columns {name!r} of one unit; expected one")
             parts.append((name, unit, *_column(columns[heading], str(heading))))
-        for name in () if units is None else units:
+        for name in known if units is not None else ():
             if name not in columns.keys():
                 raise ValueError(f"units: {unknown(name, map(str, columns.keys()))}")
         shapes = [values.shape for *_, values in parts]
@@ -156,7 +159,11 @@ class Table:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Table):
             return NotImplemented
-        if (self._core.header, self.columns, self.units) != (other._core.header, other.columns, other.units):
+        return self._core.header == other._core.header and self._has_columns_of(other)
+
+    def _has_columns_of(self, other: Table) -> bool:
+        """Returns True if two tables are equal but for their header lines."""
+        if (self.columns, self.units) != (other.columns, other.units):
             return False
         return all(same(self[name], other[name]) for name in self.columns)
 
@@ -190,21 +197,32 @@ def _of_columns(header: list[tuple[str, str]], columns: list[_core.ColumnParts])
 
 def _column(values: Any, name: str) -> tuple[list[str], NDArray[np.float64]]:
     """Returns the labels of a column, empty for numbers, and its values."""
-    array = np.asarray(values)
-    cells = array.ravel().tolist() if array.dtype.kind in "OUS" else []
-    texts = [cell for cell in cells if isinstance(cell, (str, bytes))]
-    if texts and not any(map(_is_number, cells)):
-        words = [cell if isinstance(cell, str) else cell.decode() if isinstance(cell, bytes) else "" for cell in cells]
-        labels, codes = np.unique(words, return_inverse=True)
-        return labels.tolist(), codes.reshape(array.shape).astype(float)
-    for text in texts:
-        if not _is_number(text):
-            raise ValueError(f"column {name!r} holds numbers and {text!r}; expected numbers or words")
-    return [], array.astype(float) if texts else numbers(values, f"column {name!r}")
+    label = f"column {name!r}"
+    array, is_missing = elements(values, label)
+    present = array[~is_missing].tolist() if array.dtype.kind in "OSU" else []
+    cells = [cell.decode() if isinstance(cell, bytes) else cell for cell in present]
+    if array.dtype.kind not in "SU" and not any(isinstance(cell, str) for cell in cells):
+        return [], numbers(values, label)
+    readings = [_reading(cell) for cell in cells]
+    has_number = any(reading is not None and not np.isnan(reading) for reading in readings)
+    for cell, reading in zip(cells, readings):
+        if reading is None and (has_number or not isinstance(cell, str)):
+            found = "numbers" if has_number else "texts"
+            raise ValueError(f"{label} holds {found} and {cell!r}; expected numbers or words")
+    if cells and None not in readings:
+        result: NDArray[np.float64] = np.full(array.shape, np.nan)
+        result[~is_missing] = readings
+        return [], result
+    words = np.full(array.shape, "", dtype=object)
+    words[~is_missing] = [cell if isinstance(cell, str) else "" for cell in cells]
+    labels, codes = np.unique(words.astype(str), return_inverse=True)
+    # A label that no row has keeps a column without rows one of words.
+    return labels.tolist() or [""], codes.reshape(array.shape).astype(float)
 
 
-def _is_number(value: Any) -> bool:
+def _reading(cell: Any) -> Optional[float]:
+    """Returns the number that a cell or its text is, None if it is none. The text ``"nan"`` is the number nan."""
     try:
-        return not np.isnan(float(value))
-    except (TypeError, ValueError):
-        return False
+        return float(cell) if isinstance(cell, str) or is_real(cell) else None
+    except ValueError:
+        return None

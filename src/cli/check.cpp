@@ -37,46 +37,54 @@ void check_scenario(const NamedText& source, const std::vector<std::string>& ove
   for (const std::string& remark : remarks) say("{}: warning: {}\n", scenario.name, remark);
 }
 
-/// Checks a file, and returns its kind in a word.
+/// Kind of a file in words.
+std::string_view kind_in_words(DocumentType type, const toml::table& tree) {
+  if (type == DocumentType::sweep && tree.contains("results")) return "sensitivity";
+  const std::string_view noun = kind_of(type).noun;
+  return noun.substr(noun.find(' ') + 1);
+}
+
 /// @throws ScenarioError with the faults of the file
-std::string_view check_content(DocumentType type, NamedText source, const std::vector<std::string>& overrides) {
+void check_content(DocumentType type, NamedText source, const std::vector<std::string>& overrides) {
   switch (type) {
     case DocumentType::scenario:
       check_scenario(source, overrides);
       break;
     case DocumentType::sweep:
-      return parse_sweep(std::move(source)).results.empty() ? "sweep" : "sensitivity";
+      static_cast<void>(parse_sweep(std::move(source)));
+      break;
     case DocumentType::experiment_plan:
       static_cast<void>(parse_experiment_plan(std::move(source)));
-      return "design";
+      break;
     case DocumentType::calibration:
       static_cast<void>(parse_calibration(std::move(source)));
-      return "calibration";
+      break;
     case DocumentType::figure: {
       FaultList faults;
-      static_cast<void>(read_definition(source.file, faults));
+      static_cast<void>(parse_definition(std::move(source), faults));
       faults.throw_if_any();
-      return "figure definition";
     }
   }
-  return "scenario";
 }
 
-/// Checks a file, and prints its kind and whether it is valid. Adds its faults to a list.
-void check_file(const std::string& file, const CheckOptions& options, std::vector<Fault>& faults) {
+/// Checks a file, and prints its kind and whether it is valid.
+/// @throws ScenarioError with its faults
+void check_file(const std::string& file, const CheckOptions& options) {
   NamedText source = read_named_text(file, "a scenario file, or one of another command");
   const std::string name = source.file.string();
-  const DocumentType type = type_of(parse_document(source.text, name)).value_or(DocumentType::scenario);
-  if (type != DocumentType::scenario && !options.overrides.empty()) {
-    throw UsageError(fmt::format("--set overrides keys of scenarios; {} is {}", name, kind_of(type).noun));
-  }
+  const toml::table tree = parse_document(source.text, name);
+  const DocumentType type = type_of(tree).value_or(DocumentType::scenario);
+  const std::string_view kind = kind_in_words(type, tree);
   try {
-    print_data("{}: {}, valid\n", name, check_content(type, std::move(source), options.overrides));
+    if (type != DocumentType::scenario && !options.overrides.empty()) {
+      throw_fault({name}, fmt::format("--set overrides keys of scenarios, and this is a {}", kind));
+    }
+    check_content(type, std::move(source), options.overrides);
+    print_data("{}: {}, valid\n", name, kind);
   } catch (const ScenarioError& error) {
     const std::size_t count = error.faults().size();
-    const std::string_view noun = kind_of(type).noun;
-    print_data("{}: {}, {} fault{}\n", name, noun.substr(noun.find(' ') + 1), count, count == 1 ? "" : "s");
-    faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    print_data("{}: {}, {} fault{}\n", name, kind, count, count == 1 ? "" : "s");
+    throw;
   }
 }
 
@@ -85,8 +93,8 @@ int check(const CheckOptions& options) {
   std::vector<Fault> faults;
   for (const std::string& file : options.files) {
     try {
-      check_file(file, options, faults);
-    } catch (const ScenarioError& error) {  // no TOML, or no file
+      check_file(file, options);
+    } catch (const ScenarioError& error) {
       faults.insert(faults.end(), error.faults().begin(), error.faults().end());
     }
   }

@@ -82,7 +82,8 @@ struct Trial {
   try {
     const Run run = run_scenario(parse_scenario(text_for(scenario, model), file));
     const std::vector<std::string>& warnings = run.record.warnings;
-    Trial trial{.outcome = "runs", .remark = warnings.empty() ? "" : warnings.front(), .depth = depth_of(run)};
+    Trial trial{
+        .outcome = "runs", .remark = warnings.empty() ? "" : "warning: " + warnings.front(), .depth = depth_of(run)};
     if (run.record.status == RunStatus::complete) return trial;
     trial.outcome = run.record.status == RunStatus::stopped ? "stops" : "fails";
     trial.remark = run.record.message;
@@ -153,12 +154,14 @@ int show_laws_for(const std::string& file) {
   }
   std::string text;
   append_markdown(text, rows);
-  print_data(
-      "{}\n{}\n\"Force off finite elements\": largest deviation of the force of the walls that drive, loading the "
-      "named "
-      "material in this\nconfiguration, in the bands of displacement that the scene passes. The material of the scene "
-      "may be nearer, or farther off.\n",
-      text, remarks);
+  text += fmt::format("\n{}\n", remarks);
+  text +=
+      table
+          ? "\"Force off finite elements\": largest deviation of the force of the walls that drive, loading the named "
+            "material\nin this configuration, in the bands of displacement that the scene passes. The material of "
+            "the scene may be\nnearer, or farther off.\n"
+          : "There are no finite-element results for these walls.\n";
+  print_data("{}", text);
   return k_success;
 }
 

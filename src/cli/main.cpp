@@ -213,6 +213,8 @@ int run_program(int argc, char** argv) {
     say("monograin: {}\n", fault_of_line(error, app, {argv, static_cast<std::size_t>(argc)}));
     return k_usage;
   }
+  // A stream in the parser of the command line may have swallowed it.
+  if (has_run_out_of_memory) return fail_for_memory();
   return run_action(action);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ namespace {
 struct ModelsOptions {
   std::string name;
   std::string file;
-  std::string scene;
+  std::optional<std::string> scene{};
 };
 
 std::string to_text(const Range& range) {
@@ -151,7 +152,7 @@ int run_units() {
 }
 
 int run_models(const ModelsOptions& options) {
-  if (!options.scene.empty()) return show_laws_for(options.scene);
+  if (options.scene) return show_laws_for(*options.scene);
   const Model* model = options.name.empty() ? nullptr : &model_named(options.name);
   if (options.file.empty()) {
     if (model == nullptr)
@@ -186,7 +187,7 @@ void add_models_command(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command
       ->add_option("--for", options->scene,
-                   "Run this scenario under every law: which can, how far each is off finite elements, why others not")
+                   "Scenario to run under every law of contact: which can, how far off finite elements")
       ->type_name("FILE")
       ->excludes("NAME")
       ->excludes("--parameters");

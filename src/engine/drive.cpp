@@ -183,6 +183,7 @@ class Drive {
   bool integrate_step(const std::vector<Event>& log) {
     xi_ = 0.0;
     guard_set_.begin_step(plan_.conditions, 0.0, y_);
+    demands_.note_begin(plan_);
     follow([this](ForwardSensitivities& s) { s.expect_held(guard_set_.held_at_begin().has_value()); });
     rows_.begin_step();
     if (const auto held = guard_set_.held_at_begin()) {

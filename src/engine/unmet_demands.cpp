@@ -22,6 +22,12 @@ void UnmetDemands::note_open(double xi) {
   }
 }
 
+void UnmetDemands::note_begin(const StepPlan& plan) {
+  if (!plan.leg.is_first()) return;
+  at_begin_.clear();
+  for (std::size_t i = 0; i < plan.conditions.size(); ++i) at_begin_.push_back(guard_set_.value_at_begin(i));
+}
+
 void UnmetDemands::note_held_at_begin(const Condition& condition, const StepClock& clock) {
   notes_.add(clock.number, condition_text(scene_, condition) + " holds where the step begins, and ends it there");
 }
@@ -29,7 +35,7 @@ void UnmetDemands::note_held_at_begin(const Condition& condition, const StepCloc
 void UnmetDemands::note_conditions(const StepPlan& plan, const StepClock& clock, double xi, std::span<const double> y) {
   for (std::size_t i = 0; i < plan.conditions.size(); ++i) {
     const Condition& condition = plan.conditions[i];
-    const double begin = guard_set_.value_at_begin(i);
+    const double begin = at_begin_[i];
     const double end = scene_.system->quantity(condition.quantity, condition.channel, xi, y);
     const bool has_gone_away = std::abs(end - condition.target) > std::abs(begin - condition.target);
     notes_.add(clock.number,

@@ -22,6 +22,8 @@ class UnmetDemands {
   /// Records since when in this step each channel's contact has been open.
   void note_open(double xi);
 
+  /// Keeps the values of the conditions' quantities where the first leg of a step begins.
+  void note_begin(const StepPlan& plan);
   /// A condition holds where the step begins, and ends it there.
   void note_held_at_begin(const Condition& condition, const StepClock& clock);
   /// A step has ended by none of its conditions.
@@ -35,6 +37,7 @@ class UnmetDemands {
   const Scene& scene_;
   const GuardSet& guard_set_;
   std::vector<std::optional<double>> open_since_;  ///< step coordinate, for each channel; empty while it is closed
+  std::vector<double> at_begin_;                   ///< of the step, by condition
   ProgramNotes notes_;
 };
 

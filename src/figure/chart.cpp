@@ -127,7 +127,10 @@ void append_series(std::string& text, const ChartSeries& series, std::size_t pan
   if (wanted.lowest) values.push_back(*wanted.lowest);
   if (wanted.highest) values.push_back(*wanted.highest);
 
-  Axis axis{.label = wanted.label, .is_logarithmic = wanted.is_logarithmic, .names = wanted.names};
+  Axis axis{.label = wanted.label,
+            .is_logarithmic = wanted.is_logarithmic,
+            .names = wanted.names,
+            .keeps_unit = wanted.keeps_unit};
   if (wanted.is_logarithmic) {
     const auto [lowest, highest] = std::ranges::minmax(values);
     axis.range.lowest = std::pow(10.0, std::floor(std::log10(lowest)));

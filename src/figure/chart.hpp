@@ -58,6 +58,7 @@ struct ChartAxis {
   std::optional<double> highest{};
   bool is_logarithmic = false;       ///< only positive values are shown then
   std::vector<std::string> names{};  ///< gnuplot's enhanced texts at 1, 2, ... in place of numbers
+  bool keeps_unit = false;           ///< large numbers get a power of ten and not another unit
 };
 
 /// The part of the abscissa to which a law was fitted, or in which it holds. The rest of the panel is shaded.

@@ -186,11 +186,13 @@ ColumnChart column_chart(const std::vector<fs::path>& paths, const ColumnChoice&
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const std::size_t x = column_in(table, pairs[k].x, file, is_sweep(path));
       const std::size_t y = column_in(table, pairs[k].y, file, false);
-      const ColumnAxis x_axis = axis_of(table.columns()[x], "", table);
-      const ColumnAxis y_axis = axis_of(table.columns()[y], choice.unit, table);
+      // Later runs are drawn in the units of the first.
+      const ColumnAxis x_axis = axis_of(table.columns()[x], is_first ? "" : figure.x.unit, table);
+      const ColumnAxis y_axis = axis_of(table.columns()[y], is_first ? choice.unit : figure.y.unit, table);
       if (is_first) {
         figure.chart.panels.push_back(
             {.x = shown_axis(table.columns()[x], x_axis), .y = shown_axis(table.columns()[y], y_axis)});
+        figure.chart.panels.back().y.keeps_unit = !choice.unit.empty();
         figure.x = x_axis;
         figure.y = y_axis;
       } else if (shown_axis(table.columns()[x], x_axis).names != figure.chart.panels[k].x.names) {
@@ -215,8 +217,9 @@ void add_points(ColumnChart& figure, const MeasuredPoints& points) {
     if (!are_bare && measured.unit != axis.unit) {
       const auto si = factor_of(measured.unit, axis.dimension, Table{});
       if (!si) {
-        throw FigureError(fmt::format("'{}': its unit '{}' is none of an axis in {}", shown(measured.name),
-                                      shown(measured.unit), axis.unit.empty() ? "numbers" : axis.unit));
+        throw FigureError(fmt::format("measured column '{}' {}; expected a unit of an axis {}", shown(measured.name),
+                                      measured.unit.empty() ? "has no unit" : "is in " + shown(measured.unit),
+                                      axis.unit.empty() ? "of numbers" : "in " + axis.unit));
       }
       factor = *si / axis.factor;
     }

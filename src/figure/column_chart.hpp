@@ -13,7 +13,7 @@ namespace monograin::figure {
 
 struct ColumnChoice {
   std::string x{};     ///< a column's name, with or without its unit; empty: chosen from the table
-  std::string y{};     ///< likewise
+  std::string y{};     ///< column of the ordinate; empty: the usual one
   std::string unit{};  ///< unit of y; empty: that of the table
 };
 

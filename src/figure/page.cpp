@@ -81,6 +81,7 @@ struct Numbers {
 [[nodiscard]] Numbers numbers_of(const Axis& axis) {
   if (axis.is_logarithmic || !axis.names.empty()) return {axis.label};
   const int power = shared_power(axis.range);
+  if (axis.keeps_unit) return {axis.label, power};
   const int thousands = (power >= 0 ? power : power - 2) / 3;
   constexpr std::array<std::string_view, 9> k_prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
   constexpr std::array<std::string_view, 5> k_units{" [Pa]", " [N]", " [m]", " [J]", " [s]"};

@@ -17,6 +17,7 @@ struct Axis {
   AxisRange range{};
   bool is_logarithmic = false;       ///< tics at powers of ten, whatever the range's tic step
   std::vector<std::string> names{};  ///< gnuplot's enhanced texts at 1, 2, ... in place of numbers; empty: numbers
+  bool keeps_unit = false;           ///< large numbers get a power of ten and not another unit
 };
 
 /// First part of a script: terminal and settings of the page. Sets the gnuplot variable `data` to the data file.

@@ -160,12 +160,15 @@ struct BothWays {
 }
 
 [[nodiscard]] bool unloads_as_it_loads(const RunCurves& run) {
-  return std::ranges::all_of(run.contacts, [&](const ContactCurve& contact) {
-    return std::ranges::all_of(k_quantities, [&](Quantity quantity) {
+  bool has_both = false;
+  for (const ContactCurve& contact : run.contacts) {
+    for (const Quantity quantity : k_quantities) {
       const BothWays values = both_ways(contact, run.phases, quantity);
-      return hide_each_other(values.unloading, values.loading);
-    });
-  });
+      if (!hide_each_other(values.unloading, values.loading)) return false;
+      has_both = has_both || !values.unloading.empty();
+    }
+  }
+  return has_both;
 }
 
 [[nodiscard]] std::vector<ContactCurve>::iterator contact_named(RunCurves& run, const std::string& name) {

@@ -157,8 +157,8 @@ class TableReader {
   void check_range(std::size_t row, std::size_t column, double value, Dimension dimension, const Range& range) {
     if (range.contains(value)) return;
     fault(row, column,
-          fmt::format("{} = {:.9g}: out of range; expected {}", shown(data_.columns[column].heading), value,
-                      describe(dimension, range)));
+          fmt::format("{}: {:.9g} {} is out of range; expected {}", shown(data_.columns[column].heading), value,
+                      dimension_info(dimension).si, describe(dimension, range)));
   }
 
   void fault(std::size_t row, std::size_t column, std::string message) {

@@ -171,7 +171,7 @@ const DocumentKind& kind_of(DocumentType type) {
   static const std::array<DocumentKind, 5> kinds{{
       {"a scenario", "run", {"model"}},
       {"a sweep", "sweep", {"vary", "design"}},
-      {"a plan of experiments", "design", {"program"}},
+      {"a design", "design", {"program"}},
       {"a calibration", "calibrate", {"data"}},
       {"a figure definition", "atlas", {"panel", "table", "values", "adhesion_map"}},
   }};

@@ -458,7 +458,7 @@ CourseForm course_form(const KeySpec& target, string_view column) {
                 .may_be_empty = false,
                 .example = "{ mean = ..., amplitude = ..., frequency = \"1 Hz\", cycles = 5 }"}};
   form.in_sine = {value_key("mean", "mean of the sine", {}),
-                  value_key("amplitude", "half the distance between the extrema", k_positive),
+                  value_key("amplitude", "distance from the mean to the extrema", k_positive),
                   {.name = "frequency",
                    .meaning = "cycles over time",
                    .kind = Kind::quantity,

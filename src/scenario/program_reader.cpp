@@ -51,8 +51,9 @@ std::vector<Step> ProgramReader::read_list(const Section& parent, std::string_vi
 bool ProgramReader::is_within_limit(std::size_t steps, const SourceLocation& where) {
   if (steps <= static_cast<std::size_t>(k_most_steps)) return true;
   reading_.faults.add(
-      where, fmt::format("the program has {} steps or more with its cycles written out; expected at most {}", steps,
-                         k_most_steps));
+      where,
+      fmt::format("the program has {} ramps or more with cycles, tables and sines written out; expected at most {}",
+                  steps, k_most_steps));
   return false;
 }
 
@@ -194,7 +195,7 @@ std::vector<Until> ProgramReader::read_until(const Section& step) {
     if (!section.has(spec.name) || spec.name == "wall") continue;
     if (const auto quantity = quantity_of(spec.name)) {
       conditions.push_back({.quantity = *quantity, .value = section.number(spec.name).value_or(0.0), .wall = wall});
-      asks_wall = true;
+      asks_wall = asks_wall || *quantity != Quantity::apparent_radius;
     } else {
       conditions.push_back({.event = section.text(spec.name)});
     }

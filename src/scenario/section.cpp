@@ -74,7 +74,7 @@ std::vector<std::string_view> check_names(Reading& reading, const toml::table& t
 FileText text_of_file(const Reading& reading, const std::string& name, std::size_t largest) {
   if (reading.recorded == nullptr) return read_text_file(reading.folder / name, largest);
   const auto found = reading.recorded->find(name);
-  return found == reading.recorded->end() ? FileText{{}, "it was not recorded"} : FileText{found->second, {}};
+  return found == reading.recorded->end() ? FileText{{}, "its text was not given"} : FileText{found->second, {}};
 }
 
 Section::Section(Reading& reading, Origin origin, std::span<const KeySpec> keys, std::span<const ForeignKey> foreign)

@@ -225,6 +225,20 @@ std::vector<Channel> channels_without_walls(const CheckedScenario& scenario,
   return channels;
 }
 
+/// Makes a corner of every program where one of them has a corner: rows do not depend on which wall is named first.
+void share_corners(std::vector<Channel>& channels) {
+  std::size_t count = 0;
+  for (const Channel& channel : channels) count = std::max(count, channel.program.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto has_leg = [k](const Channel& channel) { return k < channel.program.size(); };
+    const bool is_corner = std::ranges::any_of(
+        channels, [&](const Channel& channel) { return has_leg(channel) && channel.program[k].leg.is_corner; });
+    for (Channel& channel : channels) {
+      if (has_leg(channel)) channel.program[k].leg.is_corner = is_corner;
+    }
+  }
+}
+
 /// Adds the contact classes of the walls, and their channels, to a scene.
 void add_walls(const CheckedScenario& scenario, bool merges_walls, Scene& scene) {
   const std::vector<Wall> walls = make_walls(scenario);
@@ -253,6 +267,7 @@ void add_walls(const CheckedScenario& scenario, bool merges_walls, Scene& scene)
     scene.classes[c].takes_force =
         std::ranges::any_of(scene.channels[c].program, [](const Step& step) { return step.kind == Step::Kind::force; });
   }
+  share_corners(scene.channels);
   if (class_count < walls.size()) {
     std::vector<std::string> parts;
     for (const ContactClass& c : scene.classes) parts.push_back(fmt::format("{} x{}", c.name, c.normals.size()));

@@ -62,7 +62,7 @@ TEST_F(CheckCommand, OverridesKeysOfScenariosOnly) {
   EXPECT_EQ(monograin("check good.toml --set material.poisson_ratio=0.2").code, 0);
   const Outcome outcome = monograin("check sweep.toml --set material.poisson_ratio=0.2");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, "monograin: --set overrides keys of scenarios; sweep.toml is a sweep\n");
+  EXPECT_EQ(outcome.err, "sweep.toml:1:1: --set overrides keys of scenarios, and this is a sweep\n");
 }
 
 TEST_F(CheckCommand, RefusesADirectSolutionThatTheSceneDoesNotHave) {

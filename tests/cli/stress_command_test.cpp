@@ -24,9 +24,9 @@ TEST_F(StressCommand, ReplacesAnEarlierReportButNothingElse) {
   ASSERT_EQ(monograin("stress --seed 33 --scenes 1 --time 1min -o out").code, 0);
   ASSERT_EQ(monograin("stress --seed 33 --scenes 1 --time 1min -o out").code, 0);
   fs::create_directories(path("mine"));
-  write_text(path("mine/notes.txt"), "keep");
+  write_text(path("mine/report.txt"), "keep");
   EXPECT_EQ(monograin("stress --seed 33 --scenes 1 --time 1min -o mine").code, 2);
-  EXPECT_EQ(text("mine/notes.txt"), "keep");
+  EXPECT_EQ(text("mine/report.txt"), "keep");
 }
 
 TEST_F(StressCommand, ChecksAScenarioThatIsGiven) {

@@ -555,7 +555,7 @@ TEST_F(HostileNames, InTheRecordOfARunOpenNoFile) {
   write_text(path("run/run.json"), run.dump());
   const Outcome outcome = monograin("plot run --profile 0.5");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.err.find("it was not recorded"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("its text was not given"), std::string::npos) << outcome.err;
 }
 
 TEST_F(HostileNames, RecordsThatAreNoneAreRefused) {

@@ -110,8 +110,19 @@ TEST(Legs, WarnOnceOfAConditionThatNoneOfThemMeets) {
   const Until condition{.quantity = Quantity::displacement, .value = 0.5};
   const TestRun result = run(hertz_pair(with_end(course({0.1, 0.2, 0.3}), condition), 2));
   ASSERT_EQ(result.record.warnings.size(), 1U);
-  EXPECT_TRUE(result.record.warnings[0].starts_with("step 1: until axial.displacement = 0.5 m was never met"))
-      << result.record.warnings[0];
+  EXPECT_EQ(result.record.warnings[0],
+            "step 1: until axial.displacement = 0.5 m was never met (0 m at its beginning, 0.3 m at its end)");
+}
+
+TEST(Legs, HaveCornersWhereAnyWallHasOneWhicheverIsNamedFirst) {
+  const std::vector<Step> with_corners = course({0.1, 0.2, 0.3});
+  const std::vector<Step> without = course({0.1, 0.15, 0.2}, false);
+  const auto rows_of = [](const std::vector<Step>& first, const std::vector<Step>& second) {
+    return rows(
+        run(between(hertz_pair({}, 5), {wall("a", {0.0, 0.0, 1.0}, first), wall("b", {0.0, 0.0, -1.0}, second)})));
+  };
+  EXPECT_EQ(rows_of(with_corners, without), rows_of(without, with_corners));
+  EXPECT_GT(rows_of(without, with_corners).size(), rows_of(without, without).size());
 }
 
 TEST(Conditions, AskTheWallThatTheyName) {

@@ -131,6 +131,50 @@ def test_integers_are_numbers_up_to_the_largest_float():
         laws.hertz.force(10**400, 0.01, 1e-4)
 
 
+def test_complex_numbers_among_objects_are_refused():
+    for wrong in (np.complex128(1.0), 1j):
+        with pytest.raises(TypeError, match="^modulus: expected real numbers, not"):
+            laws.hertz.force(np.array([1e9, wrong], dtype=object), 0.01, 1e-4)
+
+
+def test_none_and_missing_values_of_pandas_are_nan_in_an_array_and_no_number_alone():
+    pandas = pytest.importorskip("pandas")
+    for missing in (None, pandas.NA):
+        force = laws.hertz.force(1e9, 0.01, [1e-4, missing])
+        assert_array_equal(force, [laws.hertz.force(1e9, 0.01, 1e-4), np.nan])
+        with pytest.raises(TypeError, match="^overlap: expected real numbers, not"):
+            laws.hertz.force(1e9, 0.01, missing)
+
+
+@pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
+def test_a_matrix_gives_the_numbers_of_an_array():
+    overlap = np.array([[1e-4, 2e-4], [3e-4, 4e-4]])
+    for kind in (float, object):
+        matrix = np.asmatrix(overlap.astype(kind))
+        assert_array_equal(laws.hertz.force(1e9, 0.01, matrix), laws.hertz.force(1e9, 0.01, overlap))
+
+
+def test_a_peel_curve_needs_two_states_and_single_numbers():
+    radii = np.linspace(0.0, 1e-3, 101)
+    for points in (-1, 0, 1):
+        with pytest.raises(ValueError, match=f"points = {points}: expected 2 or more"):
+            laws.mdr.peel_curve(radii, radii**2 / 0.02, 1e9, 0.1, points=points)
+    with pytest.raises(TypeError, match="^modulus: expected float, not "):
+        laws.mdr.peel_curve(radii, radii**2 / 0.02, [1e9, 2e9], 0.1)
+
+
+def test_other_threads_go_on_during_a_peel_curve():
+    radii = np.linspace(0.0, 1e-3, 101)
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        result = pool.submit(laws.mdr.peel_curve, radii, radii**2 / 0.02, 1e9, 0.1, points=40_000)
+        counted = 0
+        while not result.done():
+            counted += 1
+            time.sleep(0.001)
+    assert counted > 20
+    assert len(result.result().force) == 40_000
+
+
 def test_masked_elements_are_nan():
     force = laws.hertz.force(1e9, 0.01, np.ma.array([1e-4, 2e-4], mask=[False, True]))
     assert_array_equal(force, [laws.hertz.force(1e9, 0.01, 1e-4), np.nan])

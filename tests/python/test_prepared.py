@@ -285,7 +285,7 @@ def test_other_threads_go_on_during_map(prepared, samples):
 def interrupted(code: str, cwd) -> tuple[str, float]:
     """Output of a child process that gets Ctrl-C as soon as it has written a line, and the seconds it took to end.
 
-    A process in the background of a script ignores SIGINT, and so do its children, unless they are told otherwise. The
+    A process in the background of a script ignores SIGINT, and so do its children, unless that is changed. The
     child handles it as a program in the foreground of a terminal does.
     """
     with subprocess.Popen(
@@ -384,3 +384,27 @@ def test_a_key_is_listed_once_and_keys_are_texts():
 def test_values_of_a_run_are_one_row(prepared, samples):
     with pytest.raises(ValueError, match="shape"):
         prepared.run(samples[:1])
+
+
+@pytest.mark.parametrize(
+    "arguments, sentence",
+    [
+        ({"columns": 3}, "columns: expected Sequence[str], not 3"),
+        ({"columns": ["end(axial.force)"], "threads": "x"}, "threads: expected int, not 'x'"),
+        ({"columns": np.array(["end(axial.force)"]), "threads": 1.5}, "threads: expected int, not 1.5"),
+    ],
+)
+def test_a_wrong_argument_of_map_is_named_beside_samples_in_lists(arguments, sentence):
+    prepared = mg.scenario("die").prepare(["material.youngs_modulus", "material.yield_stress"])
+    with pytest.raises(TypeError) as caught:
+        prepared.map([[1e9, 4e7], [1e9, 5e7]], **arguments)
+    assert str(caught.value) == sentence
+
+
+def test_samples_of_unequal_lengths_are_named_with_their_keys():
+    prepared = mg.scenario("die").prepare(["material.youngs_modulus", "material.yield_stress"])
+    with pytest.raises(TypeError, match="^samples: expected numbers, not sequences of unequal lengths"):
+        prepared.map([[1e9, 4e7], [1e9]], ["end(axial.force)"])
+    samples = {"material.youngs_modulus": [1e9, 2e9], "material.yield_stress": [4e7]}
+    with pytest.raises(ValueError, match=r"\(2,\) for 'material.youngs_modulus', \(1,\) for 'material.yield_stress'"):
+        prepared.map(samples, ["end(axial.force)"])

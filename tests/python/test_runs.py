@@ -99,11 +99,20 @@ def test_a_run_of_the_program_is_loaded_and_repeated(run_program, tmp_path):
         mg.Run.load(tmp_path / "out")
 
 
-def test_saving_refuses_a_folder_of_somebody_else(die, tmp_path):
+def test_saving_keeps_other_files_of_a_folder(die, tmp_path):
     (tmp_path / "letter.txt").write_text("mine")
-    with pytest.raises(RuntimeError):
+    die.run().save(tmp_path)
+    assert (tmp_path / "letter.txt").read_text() == "mine"
+    assert mg.Run.load(tmp_path) == die.run()
+
+
+@pytest.mark.parametrize("name", ["history.csv", "events.csv", "run.json"])
+def test_saving_refuses_to_replace_a_file_of_the_user(name, die, tmp_path):
+    (tmp_path / name).write_text("mine")
+    with pytest.raises(RuntimeError, match=name):
         die.run().save(tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text() == "mine"
 
 
 def test_a_dict_is_the_scenario_of_its_text():
@@ -519,6 +528,39 @@ def test_runs_share_the_axes_of_a_figure_and_differ_in_colour(die):
         softer.plot(["axial.force", "axial.pressure"], axes=axes)
 
 
+def test_an_event_has_one_mark_in_all_panels_of_a_figure(die):
+    pytest.importorskip("matplotlib")
+    figure = die.run().plot()
+    die.replace({"material.yield_stress": "30 MPa"}).run().plot(axes=figure.axes)
+    marks: dict[str, set[tuple[str, str, float]]] = {}
+    for axes in figure.axes:
+        for line in axes.lines:
+            if line.get_linestyle() == "None":
+                marks.setdefault(line.get_gid(), set()).add((line.get_marker(), line.get_color(), line.get_markersize()))
+    assert len(marks) > 5
+    assert all(len(found) == 1 for found in marks.values())
+    symbols = [symbol for found in marks.values() for symbol, _, _ in found]
+    assert len(set(symbols)) == len(symbols)
+
+
+def test_a_column_that_events_lack_is_drawn_without_them(die):
+    pytest.importorskip("matplotlib")
+    run = die.run()
+    assert "row" in run and "row" not in run.events
+    for figure in (run.plot("row"), run.plot("axial.force", x="row")):
+        (axes,) = figure.axes
+        assert axes.lines and all(line.get_linestyle() != "None" for line in axes.lines)
+
+
+def test_a_file_that_the_scenario_does_not_name_is_refused():
+    hollomon = mg.scenario("hollomon")
+    name = "hollomon-pressure.csv"
+    content = (mg.scenario_folder() / name).read_text()
+    assert mg.Scenario(hollomon.text, files={name: content}).replace({"output.points": 20}).files == {name: content}
+    with pytest.raises(ValueError, match="files: the scenario names no file 'hollomon-presure.csv'"):
+        mg.Scenario(hollomon.text, files={"hollomon-presure.csv": content})
+
+
 def test_runs_and_tables_show_their_first_and_last_rows(die):
     run = die.run()
     shown = run._repr_html_()
@@ -560,6 +602,32 @@ def test_equality_is_that_of_contents(die, tmp_path):
     assert other != hollomon
 
 
+def test_comments_and_the_name_of_a_scenario_do_not_make_runs_differ(die):
+    run = die.run()
+    again = mg.Scenario("# A comment.\n" + die.text, origin="elsewhere/other.toml").run()
+    assert again.history.header["scenario"] == "other"
+    assert again == run and hash(again) == hash(run)
+    assert mg.Scenario(die.text + '\n[numerics]\nrtol = 1e-9\n').run() != run
+
+
+def test_tables_that_steps_follow_belong_to_a_scenario(tmp_path):
+    step = {"displacement": {"table": "path.csv", "time": "t[s]", "value": "x[mm]"}}
+    content = mg.scenario("hertz").to_dict()
+    content["loading"]["steps"] = [step]
+    scenarios = []
+    for folder, target in (("a", 0.1), ("b", 0.2)):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "path.csv").write_text(f"t[s],x[mm]\n0,0\n1,{target}\n")
+        scenarios.append(mg.Scenario(content, origin=tmp_path / folder / "path.toml"))
+    first, second = scenarios
+    assert first != second and hash(first) != hash(second)
+    (placed,) = first.to_dict()["loading"]["steps"]
+    assert placed["displacement"]["table"] == str(tmp_path / "a" / "path.csv")
+    again = mg.Scenario(first.to_toml())
+    assert again == first == mg.Scenario(content, files={"path.csv": (tmp_path / "a" / "path.csv").read_text()})
+    assert_array_equal(again.run()["axial.force"], first.run()["axial.force"])
+
+
 @pytest.mark.parametrize("wrong", [0, -1, None, slice(0, 3), ["time"]])
 def test_only_a_name_finds_a_column(die, wrong):
     with pytest.raises(TypeError, match="column: expected str, not"):
@@ -581,6 +649,12 @@ def test_only_a_name_finds_a_column(die, wrong):
         (lambda: mg.scenario("die").run().profile("x"), "time: expected float, not 'x'"),
         (lambda: mg.scenario("die").run().plot(axes=3), "axes: expected axes of matplotlib, not 3"),
         (lambda: mg.Table.from_columns([1, 2]), "columns: expected arrays by name"),
+        (lambda: mg.Scenario(mg.scenario("die").text, files=3), "files: expected texts by name, in a dict, not 3"),
+        (lambda: mg.Scenario(mg.scenario("die").text, files={"a.csv": 3}), "files: expected texts by name, not 3 by 'a.csv'"),
+        (lambda: mg.scenario("die").run().profile(np.array([0.1, 0.2])), "time: expected float, not array"),
+        (lambda: mg.Table.from_columns({"a": [1.0]}, units="N"), "units: expected texts by name, in a dict, not 'N'"),
+        (lambda: mg.compare(3, mg.scenario("die").run()), "a: expected a run, a table, a file, or arrays by name, not 3"),
+        (lambda: mg.compare(mg.scenario("die").run(), 3), "b: expected a run, a table, a file, or arrays by name, not 3"),
         (lambda: mg.Scenario("die"), "no TOML text; Scenario.load reads files, and monograin.scenario has ready"),
     ],
 )
@@ -631,10 +705,39 @@ def test_masked_and_missing_elements_of_a_table_are_nan():
 
 
 @pytest.mark.parametrize(
+    "column, values",
+    [
+        (["1", "nan"], [1.0, np.nan]),
+        ([1.0, "nan"], [1.0, np.nan]),
+        (["nan"], [np.nan]),
+        (np.ma.array(["1", "x"], mask=[False, True]), [1.0, np.nan]),
+        ([None, "2"], [np.nan, 2.0]),
+        (["nan", "a"], ["nan", "a"]),
+        ([np.nan, "a"], ["", "a"]),
+        ([None, "a"], ["", "a"]),
+        (np.ma.array(["a", "7"], mask=[False, True]), ["a", ""]),
+        (np.ma.array(["a"], mask=[True]), [""]),
+    ],
+)
+def test_texts_are_read_as_numbers_if_there_is_one_that_is_not_missing(column, values):
+    found = mg.Table.from_columns({"a": column})["a"]
+    assert_array_equal(found, values)
+    assert found.dtype.kind == np.asarray(values).dtype.kind
+
+
+def test_no_texts_are_a_column_of_words_and_no_numbers_one_of_numbers():
+    table = mg.Table.from_columns({"word": np.array([], dtype=str), "number": []})
+    assert (table["word"].dtype.kind, table["number"].dtype.kind) == ("U", "f")
+    assert len(table) == 0
+
+
+@pytest.mark.parametrize(
     "columns, units, error, sentence",
     [
         ({"a[N]": [1.0], "a": [2.0]}, {"a": "N"}, ValueError, "two columns 'a' of one unit"),
         ({"force": [1.0]}, {"forse": "N"}, ValueError, "did you mean 'force'"),
+        ({"a[N]": [1.0]}, {"a[N]": "kN"}, ValueError, r"units: 'kN' for 'a\[N\]', whose heading has 'N'"),
+        ({"a": [1j, "x"]}, None, ValueError, "column 'a' holds texts and 1j"),
         ({"a": [1.0, "x"]}, None, ValueError, "column 'a' holds numbers and 'x'"),
         ({"a": np.array(["2020"], dtype="M8")}, None, TypeError, "column 'a': expected real numbers, not dates"),
         ({"a": [1j]}, None, TypeError, "complex"),

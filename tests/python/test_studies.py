@@ -354,6 +354,9 @@ def test_a_fit_is_drawn_through_its_data():
     assert_array_equal(curve.get_ydata(), fit.fit["fit"])
     assert axes.get_ylabel().endswith("[N]")
     assert fit.plot(axes=axes) is figure and len(axes.lines) == 4
+    two = type(figure)().subplots(1, 2)
+    fit.plot(axes=two)
+    assert [len(each.lines) for each in two] == [2, 0]
 
 
 def test_results_show_themselves_as_tables():
@@ -382,5 +385,5 @@ def test_wrong_types_of_studies_are_sentences(die, tmp_path):
     with pytest.raises(ValueError, match="shard: expected"):
         mg.sweep({"scenario": die, "vary": {"output.points": {"values": [20, 30]}}}, tmp_path / "swept", shard=(-1, 2))
     for data in (np.zeros((3, 2)), [1.0, 2.0]):
-        with pytest.raises(TypeError, match="columns: expected arrays by name"):
+        with pytest.raises(TypeError, match="data: expected a run, a table, a file, or arrays by name"):
             mg.calibrate(_uniaxial_fit(data))

@@ -106,8 +106,8 @@ TEST(Table, SaysInWhichRowAndColumnAFaultIs) {
             (Lines{"path.csv:4:1: 2 s: not later than the row before; expected ascending times",
                    "path.csv:5:1: 1 s: not later than the row before; expected ascending times"}));
   EXPECT_EQ(faults(with_displacement(k_table), "t[s],x[mm]\n-1,0\n1,1e12\n"),
-            (Lines{"path.csv:2:1: t[s] = -1: out of range; expected a time from 0 s to 1e+18 s",
-                   "path.csv:3:3: x[mm] = 1e+09: out of range; expected a length from -1e+06 m to 1e+06 m"}));
+            (Lines{"path.csv:2:1: t[s]: -1 s is out of range; expected a time from 0 s to 1e+18 s",
+                   "path.csv:3:3: x[mm]: 1e+09 m is out of range; expected a length from -1e+06 m to 1e+06 m"}));
   EXPECT_EQ(faults(with_displacement(k_table), "t[s],x[mm]\n0,0\n"),
             Lines{"path.csv:2:1: the table ends where it begins; expected a later row"});
 }

@@ -288,12 +288,12 @@ const std::vector<FaultRow> k_rows{
              12,
              "cycle = 2\nsteps = [{ hold = true, duration = 1 }]",
              {"die.toml:14:1: key 'duration' does not go with 'cycle' in one step"}},
-    FaultRow{
-        "CycleTooLong",
-        12,
-        "cycle = 100000\nsteps = [{ hold = true, duration = 1 }, { hold = true, duration = 1 "
-        "}]\n[[loading.steps]]\nhold = true",
-        {"die.toml:12:1: the program has 200000 steps or more with its cycles written out; expected at most 100000"}},
+    FaultRow{"CycleTooLong",
+             12,
+             "cycle = 100000\nsteps = [{ hold = true, duration = 1 }, { hold = true, duration = 1 "
+             "}]\n[[loading.steps]]\nhold = true",
+             {"die.toml:12:1: the program has 200000 ramps or more with cycles, tables and sines written out; expected "
+              "at most 100000"}},
     FaultRow{"PointsAreFractional",
              13,
              "duration = 1\n[output]\npoints = 1.5",

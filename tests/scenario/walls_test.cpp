@@ -87,13 +87,13 @@ TEST(Cycles, AreLimitedInTotal) {
   const std::vector<std::string> faults =
       faults_of(with_loading("[loading]\nconfiguration = \"simple\"\nsteps = [" + nested + "]\n"));
   ASSERT_EQ(faults.size(), 1U);
-  EXPECT_NE(faults[0].find("1000000 steps or more"), std::string::npos) << faults[0];
+  EXPECT_NE(faults[0].find("1000000 ramps or more"), std::string::npos) << faults[0];
 }
 
 TEST(Cycles, AreLimitedOverAllWalls) {
   const std::vector<std::string> faults = faults_of(two_walls(cycle_of(60000), cycle_of(60000)));
   ASSERT_EQ(faults.size(), 1U);
-  EXPECT_NE(faults[0].find("120000 steps or more"), std::string::npos) << faults[0];
+  EXPECT_NE(faults[0].find("120000 ramps or more"), std::string::npos) << faults[0];
 }
 
 TEST(Cycles, AreLimitedInDepth) {

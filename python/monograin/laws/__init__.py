@@ -3,7 +3,7 @@
 Every function takes numbers or arrays, which broadcast as in numpy, and returns a float or an array. Outside the domain
 of a law the result is nan, as it is for masked elements. Inadmissible parameters, such as a negative yield stress, and
 arrays that do not broadcast raise ``ValueError``; what is no real number raises ``TypeError``. Other threads go on while
-a long array is evaluated, and Ctrl-C ends it.
+a long array is evaluated, and Ctrl-C ends it; a curve of :func:`mdr.peel_curve` is completed first.
 
 - :mod:`monograin.laws.hertz`: an elastic sphere at a rigid wall
 - :mod:`monograin.laws.curved_sphere`: an elastic sphere at a rigid wall, with the curvature of the sphere's profile

@@ -237,6 +237,8 @@ def peel_curve(
         ValueError: for samples or numbers that are not admissible, and if the edge is unstable at the largest radius: the
             profile must then be known further out.
     """
+    if points < 2:
+        raise ValueError(f"points = {points}: expected 2 or more")
     return PeelCurve(*_core.laws.mdr_peel_curve(radii, heights, modulus, surface_energy, control, points))
 
 

@@ -43,10 +43,10 @@ struct Inherited {
 
 class DefinitionReader {
  public:
-  DefinitionReader(const fs::path& file, FaultList& faults) : file_(file), faults_(faults), reading_{faults} {}
+  DefinitionReader(NamedText source, FaultList& faults)
+      : file_(std::move(source.file)), faults_(faults), reading_{faults}, text_(std::move(source.text)) {}
 
   [[nodiscard]] Definition read() {
-    text_ = contents();
     const toml::table tree = parse_document(text_, file_.string());
     expect_type(tree, file_.string(), DocumentType::figure);
     const Keys keys = root_keys();
@@ -84,12 +84,6 @@ class DefinitionReader {
   }
 
  private:
-  [[nodiscard]] std::string contents() const {
-    auto [text, problem] = read_text_file(file_, k_largest_text);
-    if (!problem.empty()) throw_fault({file_.string()}, problem + "; expected the definition of a figure");
-    return std::move(text);
-  }
-
   [[nodiscard]] std::optional<PlacedExpression> formula(const Section& section, std::string_view key) {
     if (!section.has(key) || section.text(key).empty()) return std::nullopt;
     SourceLocation where = section.value_place(key);
@@ -574,6 +568,14 @@ class DefinitionReader {
 
 }  // namespace
 
-Definition read_definition(const fs::path& file, FaultList& faults) { return DefinitionReader(file, faults).read(); }
+Definition parse_definition(NamedText source, FaultList& faults) {
+  return DefinitionReader(std::move(source), faults).read();
+}
+
+Definition read_definition(const fs::path& file, FaultList& faults) {
+  auto [text, problem] = read_text_file(file, k_largest_text);
+  if (!problem.empty()) throw_fault({file.string()}, problem + "; expected the definition of a figure");
+  return parse_definition({std::move(text), file}, faults);
+}
 
 }  // namespace monograin

@@ -11,6 +11,7 @@
 #include "history/table.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/scenario.hpp"
+#include "scenario/text_file.hpp"
 #include "study/atlas/adhesion_map.hpp"
 #include "study/formula/expression.hpp"
 
@@ -117,5 +118,7 @@ struct Definition {
 /// Reads and checks a definition with its scenarios and files, whose paths are relative to the definition's folder. The
 /// result is only meaningful if nothing was added to `faults`.
 [[nodiscard]] Definition read_definition(const std::filesystem::path& file, FaultList& faults);
+/// Reads a definition from its text. Files that it names lie beside its file.
+[[nodiscard]] Definition parse_definition(NamedText source, FaultList& faults);
 
 }  // namespace monograin

@@ -9,6 +9,7 @@
 #include "figure/page.hpp"
 #include "history/run.hpp"
 #include "scenario/edit.hpp"
+#include "scenario/file_keys.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/calibration_language.hpp"
@@ -179,8 +180,22 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
           {"text", calibration.text}};
 }
 
-/// Name of a table that an option refers to. It lies beside the fitted scenario, under the option's name.
-std::string table_name(const std::string& option) { return option + ".csv"; }
+/// A file that the scenario names. It lies beside the fitted scenario.
+struct FittedFile {
+  FileKey key;
+  std::string name;  ///< beside the fitted scenario: that of the option, or of the program
+};
+
+std::vector<FittedFile> fitted_files(const Calibration& calibration) {
+  std::vector<FittedFile> files;
+  for (FileKey& key : file_keys(calibration.scenario)) {
+    const std::string option = key.path.substr(key.path.rfind('.') + 1);
+    const bool is_of_program = key.path.starts_with("loading");
+    std::string name = is_of_program ? fmt::format("program-{}.csv", files.size() + 1) : option + ".csv";
+    files.push_back({std::move(key), std::move(name)});
+  }
+  return files;
+}
 
 /// True if every curve has an override.
 bool is_shared(const Calibration& calibration, const std::string& key_and_value) {
@@ -220,16 +235,14 @@ std::string fitted_scenario_text(const Calibration& calibration, const Calibrati
     head += fmt::format("#   {} = {}{}\n", parameter.key.path, with_unit(value / parameter.unit_factor, parameter.unit),
                         std::isfinite(half) ? fmt::format(" +- {}", with_unit(half, parameter.unit)) : "");
   }
-  for (const auto& [option, curve] : calibration.scenario.curves) {
-    edits.push_back({calibration.scenario.model + '.' + option, '"' + table_name(option) + '"'});
-  }
+  for (const FittedFile& file : fitted_files(calibration)) edits.push_back({file.key.path, '"' + file.name + '"'});
   const std::string text = shared_scenario_text(calibration, head);
   return head + with_values(text, edits);
 }
 
 FileTexts fitted_scenario_files(const Calibration& calibration) {
   FileTexts files;
-  for (const auto& [option, curve] : calibration.scenario.curves) files.emplace(table_name(option), curve.text);
+  for (FittedFile& file : fitted_files(calibration)) files.emplace(std::move(file.name), std::move(file.key.text));
   return files;
 }
 

@@ -228,7 +228,8 @@ void append_constants(const std::vector<BenchScene>& scenes, std::string& text) 
 void append_profiles(const std::vector<BenchProfile>& profiles, std::string& text) {
   if (profiles.empty()) return;
   text +=
-      "\n## Where the time goes\n\nShares of one history's time. What is left is the integrator's own, event location "
+      "\n## Where the time goes\n\nShares of one history's time on the clock, of the fastest of twenty. What is left "
+      "is the integrator's own, event location "
       "and recording less what\nthe system does for them.\n\n";
   std::vector<MarkdownRow> rows{
       {"scene", "integrator", "history", "law", "linear algebra", "guards", "observables", "the rest", "law calls"}};
