@@ -28,7 +28,9 @@ Curves = Union[Run, Table, Path, Mapping[str, Any], DataFrame]
 def sweep(
     source: Source, folder: Optional[Path] = None, *, threads: int = 0, shard: tuple[int, int] = (1, 1)
 ) -> Optional[Table]:
-    """Runs a sweep on several threads, as ``monograin sweep`` does. Runs already in the folder are kept.
+    """Runs a sweep on several threads, as ``monograin sweep`` does.
+
+    An interrupted sweep goes on from the runs that are in its folder. Results of another sweep there are replaced.
 
     Args:
         source: a sweep file (TOML), or a dict of the same structure, whose file names are relative to the current

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cctype>
+#include <optional>
 #include <stdexcept>
 
 #include "api/checked.hpp"
@@ -37,8 +38,21 @@ std::string advice_on(std::string_view name, const std::vector<std::string_view>
 /// Names of the columns that runs of a scenario may have.
 struct ColumnNames {
   std::vector<std::string> numbers;
+  std::vector<std::string> units;  ///< of the columns of numbers; derivatives have none here
   std::vector<std::string> words;
 };
+
+/// A column's name, and the unit that a formula gives it; none if it gives none.
+struct NameInFormula {
+  std::string_view name;
+  std::optional<std::string_view> unit{};
+};
+
+NameInFormula parts_of(std::string_view name) {
+  const std::size_t bracket = name.rfind('[');
+  if (bracket == std::string_view::npos || !name.ends_with(']')) return {name};
+  return {name.substr(0, bracket), name.substr(bracket + 1, name.size() - bracket - 2)};
+}
 
 /// Names of the columns of a scene, of each wall alone, which other numbers may take out of its class, and of the
 /// derivatives.
@@ -47,11 +61,14 @@ ColumnNames names_of_columns(const CheckedScenario& scenario) {
   const Table columns = Recorder(*scene.system, {}).take_history();
   ColumnNames found;
   for (const Column& column : columns.columns()) {
-    std::vector<std::string>& names = column.labels.empty() ? found.numbers : found.words;
-    names.push_back(column.name);
+    const auto add = [&](std::string name) {
+      (column.labels.empty() ? found.numbers : found.words).push_back(std::move(name));
+      if (column.labels.empty()) found.units.push_back(column.unit);
+    };
+    add(column.name);
     const std::size_t point = column.name.find('.');
     if (point == std::string::npos) continue;
-    for (const WallSpec& wall : scenario.loading.walls) names.push_back(wall.name + column.name.substr(point));
+    for (const WallSpec& wall : scenario.loading.walls) add(wall.name + column.name.substr(point));
   }
   const std::size_t count = found.numbers.size();
   for (const SensitivityKey& key : scenario.sensitivities) {
@@ -63,12 +80,21 @@ ColumnNames names_of_columns(const CheckedScenario& scenario) {
 }
 
 /// Checks the names in a formula by the columns that runs may have.
-/// @throws std::invalid_argument for an unknown name, or a column of words
+/// @throws std::invalid_argument for an unknown name, another unit than that of the column, or a column of words
 void check_names(const Expression& formula, std::string_view text, const ColumnNames& columns) {
   const std::vector<std::string_view> known(columns.numbers.begin(), columns.numbers.end());
   for (const std::string_view name : formula.names()) {
-    const std::string_view without_unit = name.substr(0, name.find('['));
-    if (std::ranges::find(known, without_unit) != known.end()) continue;
+    if (std::ranges::find(known, name) != known.end()) continue;
+    const auto [without_unit, unit] = parts_of(name);
+    const auto found = static_cast<std::size_t>(std::ranges::find(known, without_unit) - known.begin());
+    const bool is_derivative = found >= columns.units.size() && found < known.size();
+    if (is_derivative || (found < known.size() && unit == columns.units[found])) continue;
+    if (found < known.size()) {
+      const std::string heading =
+          Column{.name = columns.numbers[found], .unit = columns.units[found], .labels = {}}.heading();
+      throw std::invalid_argument(
+          fmt::format("'{}': there is no '{}'; expected {}, or the name without a unit", text, shown(name), heading));
+    }
     if (std::ranges::find(columns.words, without_unit) != columns.words.end()) {
       throw std::invalid_argument(
           fmt::format("'{}': column '{}' holds words, and a formula takes numbers; the history of a single run has the "
@@ -103,8 +129,7 @@ double value_of(const Expression& formula, std::string_view text, const Table& h
 /// Parts of a history that the formulas do not need, and that a run may leave out.
 LeftOut not_needed_by(std::span<const Expression> formulas) {
   const auto names_energy = [](const Expression& formula) {
-    return std::ranges::any_of(formula.names(),
-                               [](std::string_view name) { return is_energy(name.substr(0, name.find('['))); });
+    return std::ranges::any_of(formula.names(), [](std::string_view name) { return is_energy(parts_of(name).name); });
   };
   return {.energies = std::ranges::none_of(formulas, names_energy),
           .rows = std::ranges::all_of(formulas, &Expression::needs_last_row_only)};

@@ -20,6 +20,7 @@
 #include "figure/markdown.hpp"
 #include "history/run.hpp"
 #include "scenario/document.hpp"
+#include "scenario/language.hpp"
 #include "study/atlas/atlas.hpp"
 #include "system/resolution.hpp"
 
@@ -41,13 +42,6 @@ struct Trial {
   double depth = 0.0;   ///< largest displacement of a wall, over R0
 };
 
-[[nodiscard]] bool takes_key(const Model& model, std::string_view key) {
-  if (key == "preset") return !model.presets.empty();
-  if (key == "ludwik") return model.power_law_of != nullptr;
-  return std::ranges::find(model.material, key, &QuantityKey::name) != model.material.end() ||
-         std::ranges::find(model.material_options, key, &OptionKey::name) != model.material_options.end();
-}
-
 /// The scenario with another law: without the tables and the numbers of the material that this law does not know.
 [[nodiscard]] std::string text_for(toml::table scenario, const Model& model) {
   scenario.insert_or_assign("model", model.name);
@@ -57,9 +51,10 @@ struct Trial {
   }
   if (toml::table* numerics = scenario["numerics"].as_table()) numerics->erase("integrator");
   if (toml::table* material = scenario["material"].as_table()) {
+    const std::vector<KeySpec>& known = language_of(model.name).material;
     std::vector<std::string> unknown;
     for (const auto& [key, value] : *material) {
-      if (!takes_key(model, key.str())) unknown.emplace_back(key.str());
+      if (find_key(known, key.str()) == nullptr) unknown.emplace_back(key.str());
     }
     for (const std::string& key : unknown) material->erase(key);
   }

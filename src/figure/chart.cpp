@@ -206,12 +206,14 @@ class Looks {
     return phase_line(stroke(series), phase);
   }
 
-  [[nodiscard]] std::string floor_points(const ChartSeries& series) const { return floor_style(stroke(series).colour); }
+  [[nodiscard]] std::string floor_points(const ChartSeries& series) const {
+    return floor_style(is_points(series) ? colour_of_points(series) : stroke(series).colour);
+  }
 
   [[nodiscard]] std::string points(const ChartSeries& series) const {
     if (series.style == Style::events) return event_points(series.legend);
     const auto place = static_cast<std::size_t>(std::ranges::find(points_, series.legend) - points_.begin());
-    const unsigned shade = series.colour ? colour_of(*series.colour) : k_neutral_colour;
+    const unsigned shade = colour_of_points(series);
     if (is_crowd(series)) return fmt::format("with points pt 7 ps 0.2 lc rgb '#A0{:06X}'", shade);
     return fmt::format("with points pt {} ps 0.5 lw 1 lc rgb '#{:06X}'", point_of(place), shade);
   }
@@ -322,6 +324,10 @@ class Looks {
         lines.mark = std::max(lines.mark, k);
       }
     }
+  }
+
+  [[nodiscard]] static unsigned colour_of_points(const ChartSeries& series) {
+    return series.colour ? colour_of(*series.colour) : k_neutral_colour;
   }
 
   [[nodiscard]] Stroke stroke(const ChartSeries& series) const {

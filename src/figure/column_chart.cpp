@@ -49,11 +49,8 @@ constexpr std::string_view k_after_keys = "status";
 
 /// The dimension of which a column's unit is the SI unit.
 [[nodiscard]] Dimension dimension_of(std::string_view unit) {
-  for (const Dimension dimension : {Dimension::length, Dimension::stress, Dimension::force, Dimension::time,
-                                    Dimension::surface_energy, Dimension::velocity, Dimension::angle}) {
-    if (dimension_info(dimension).si == unit) return dimension;
-  }
-  return Dimension::none;
+  const auto found = std::ranges::find(dimensions(), unit, &DimensionInfo::si);
+  return found == dimensions().end() ? Dimension::none : found->dimension;
 }
 
 [[nodiscard]] ColumnAxis axis_of(const Column& column, const std::string& unit, const Table& table) {

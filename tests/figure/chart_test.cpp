@@ -252,6 +252,10 @@ TEST(Chart, MarksErrorsThatALogarithmicAxisCannotShow) {
   const std::string script = script_of(chart);
   EXPECT_EQ(count(script, "title 'at the lower end of the axis, or below'"), 1U) << script;
   EXPECT_EQ(count(script, "series 1 at the floor.'"), 1U) << script;
+  errors.style = ChartSeries::Style::points;
+  chart = chart_of({errors});
+  chart.panels[0].y.is_logarithmic = true;
+  EXPECT_EQ(count(script_of(chart), "series 1 at the floor.'"), 1U) << "points, too: " << script_of(chart);
 }
 
 TEST(Chart, MarksNothingOnAnAxisThatShowsZero) {

@@ -94,6 +94,16 @@ def test_a_formula_that_is_none_is_an_error(prepared, samples):
 def test_a_formula_takes_the_heading_of_a_column(prepared, samples):
     force, same = prepared.map(samples[:2], ["max(axial.force)", "max(axial.force[N])"]).T
     assert_array_equal(force, same)
+    with pytest.raises(ValueError, match=r"there is no 'axial.force\[kN\]'; expected axial.force\[N\]"):
+        prepared.map(samples[:2], ["max(axial.force[kN])"])
+
+
+def test_a_formula_takes_the_derivative_by_a_key_in_a_list():
+    key = "loading.steps[0].displacement"
+    scenario = mg.scenario("uniaxial").replace({"sensitivities": {"keys": [key]}})
+    name = f"`d(axial.force)/d({key})`"
+    values = scenario.prepare(["material.poisson_ratio"]).map([0.3], [f"end({name})"])
+    assert np.isfinite(values).all()
 
 
 def test_samples_that_are_masked_are_refused_and_others_than_numbers_are_errors():

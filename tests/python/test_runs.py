@@ -597,7 +597,7 @@ def test_equality_is_that_of_contents(die, tmp_path):
     assert die.replace({"material.yield_stress": "49 MPa"}) == changed
     hollomon = mg.scenario("hollomon")
     assert mg.Scenario(hollomon.to_dict()) == hollomon
-    (name,) = hollomon._core.files or ["hollomon-pressure.csv"]
+    name = "hollomon-pressure.csv"
     other = mg.Scenario(hollomon.text, files={name: "delta_max_over_R,p_over_Y\n0,3.6\n0.1,5\n0.3,6\n0.6,6\n"})
     assert other != hollomon
 
