@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from typing import Any, Iterable
+from typing import Any, Callable, Iterable
 
 # A longer table shows this many of its first rows and of its last rows, and this many of its first columns.
 _ROWS = 5
@@ -17,18 +17,20 @@ def table(caption: str, headings: Iterable[str], rows: Iterable[Iterable[Any]]) 
     return f"<p>{html.escape(caption)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def excerpt(caption: str, columns: dict[str, Any]) -> str:
+def excerpt(caption: str, headings: list[str], column: Callable[[int], Any], count: int) -> str:
     """Returns the first columns of a table, and of these the first and the last rows, as HTML.
 
     Args:
         caption: text above the table.
-        columns: arrays of equal length by heading.
+        headings: of all columns.
+        column: column by its number, an array; called for those that are shown.
+        count: number of rows.
     """
-    names = list(columns)[:_COLUMNS]
-    left_out = len(columns) - len(names)
-    count = len(columns[names[0]]) if names else 0
+    names = headings[:_COLUMNS]
+    left_out = len(headings) - len(names)
+    columns = [column(k) for k in range(len(names))]
     places = [*range(count)] if count <= 2 * _ROWS else [*range(_ROWS), None, *range(count - _ROWS, count)]
-    rows = [["..." if row is None else columns[name][row] for name in names] for row in places]
+    rows = [["..." if row is None else cells[row] for cells in columns] for row in places]
     more = f"; {left_out} more columns" if left_out else ""
     return table(caption + more, names, rows)
 

@@ -184,8 +184,9 @@ class Table:
 
     def _repr_html_(self) -> str:
         count = f"{len(self)} row{'' if len(self) == 1 else 's'}"
-        headings = {f"{name} [{unit}]" if unit and not name.endswith("]") else name: self[name] for name, unit in self.units.items()}
-        return _html.excerpt(f"Table of {count}", headings)
+        names = list(self.units)
+        headings = [f"{name} [{unit}]" if unit and not name.endswith("]") else name for name, unit in self.units.items()]
+        return _html.excerpt(f"Table of {count}", headings, lambda k: self[names[k]], len(self))
 
     def __repr__(self) -> str:
         return f"<Table of {len(self)} rows: {', '.join(self.columns)}>"

@@ -88,17 +88,8 @@ void check_file(const std::string& file, const CheckOptions& options) {
   }
 }
 
-/// Checks all files; the faults of all of them are reported together.
 int check(const CheckOptions& options) {
-  std::vector<Fault> faults;
-  for (const std::string& file : options.files) {
-    try {
-      check_file(file, options);
-    } catch (const ScenarioError& error) {
-      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
-    }
-  }
-  if (!faults.empty()) throw ScenarioError(std::move(faults));
+  read_each(options.files, [&](const std::string& file) { check_file(file, options); });
   return k_success;
 }
 

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "engine/drive.hpp"
 
@@ -33,6 +34,10 @@ class UsageError : public std::runtime_error {
 /// The model of a name given on the command line.
 /// @throws UsageError if there is no such model; the message lists the models
 [[nodiscard]] const Model& model_named(const std::string& name);
+
+/// Reads files one after another, and reports the faults of all of them together.
+/// @throws ScenarioError with these faults
+void read_each(const std::vector<std::string>& files, const std::function<void(const std::string&)>& read);
 
 /// Prints what every law makes of a scenario's scene, and how far it is from finite elements. Returns the exit code.
 [[nodiscard]] int show_laws_for(const std::string& file);

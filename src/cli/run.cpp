@@ -50,15 +50,9 @@ std::vector<Job> read_jobs(const RunOptions& options) {
     jobs.push_back(make_job([&] { return parse_scenario(default_scenario_text(), "die.toml", options.overrides); }));
     return jobs;
   }
-  std::vector<Fault> faults;
-  for (const std::string& file : options.files) {
-    try {
-      jobs.push_back(make_job([&] { return read_scenario(file, options.overrides, FileKind::any); }));
-    } catch (const ScenarioError& error) {
-      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
-    }
-  }
-  if (!faults.empty()) throw ScenarioError(std::move(faults));
+  read_each(options.files, [&](const std::string& file) {
+    jobs.push_back(make_job([&] { return read_scenario(file, options.overrides, FileKind::any); }));
+  });
   return jobs;
 }
 
@@ -141,6 +135,18 @@ int exit_code_of(RunStatus status) {
       return k_solver_failure;
   }
   return k_unexpected;
+}
+
+void read_each(const std::vector<std::string>& files, const std::function<void(const std::string&)>& read) {
+  std::vector<Fault> faults;
+  for (const std::string& file : files) {
+    try {
+      read(file);
+    } catch (const ScenarioError& error) {
+      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+  if (!faults.empty()) throw ScenarioError(std::move(faults));
 }
 
 void add_run_command(CLI::App& app, Action& action) {

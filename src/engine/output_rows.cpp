@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "system/resolution.hpp"
@@ -32,11 +33,13 @@ void OutputRows::begin_step() { points_.clear(); }
 
 void OutputRows::place(const Leg& leg, double end, bool may_end_elsewhere) {
   next_ = 0;
-  const int first = end > 0.0 ? 1 : output_.points;
-  for (int j = first; output_.times.empty() && j <= output_.points; ++j) {
-    const double share = end * (static_cast<double>(j) / output_.points);
-    const bool is_before = !leg.is_first() && share <= leg.begin + k_same_instant;
-    if (is_before || share > leg.end + k_same_instant) continue;
+  const auto count = static_cast<double>(output_.points);
+  // A table has as many legs as rows: points before the leg are skipped.
+  const double first = end > 0.0 ? std::max(1.0, std::min(count, std::floor(leg.begin / end * count))) : count;
+  for (int j = static_cast<int>(first); output_.times.empty() && j <= output_.points; ++j) {
+    const double share = end * (static_cast<double>(j) / count);
+    if (share > leg.end + k_same_instant) break;
+    if (!leg.is_first() && share <= leg.begin + k_same_instant) continue;
     const double xi = std::min(1.0, (share - leg.begin) / (leg.end - leg.begin));
     points_.push_back({xi, clock_.time(xi)});
     if (may_end_elsewhere && j == output_.points) points_.back().xi = k_at_end;
