@@ -131,14 +131,6 @@ std::vector<Objection> objections(const ModelInput& input) {
   return found;
 }
 
-/// Law of a scenario, and warnings for the user about it.
-struct Law {
-  LoadingLaw loading;
-  double hertz_stiffness = 1.0;  ///< k_H
-  UnloadingRule unloading;
-  std::vector<Diagnostic> reservations;
-};
-
 UnloadingRule tabulated_rule(const SampledCurve& table, double stiffness_over_shear) {
   std::vector<UnloadingRow> rows;
   for (std::size_t k = 0; k < table.x.size(); ++k) {
@@ -148,49 +140,40 @@ UnloadingRule tabulated_rule(const SampledCurve& table, double stiffness_over_sh
 }
 
 /// @throws std::invalid_argument for a material that the source has no law for
-Law law_of(const ModelInput& input) {
+ContactSettings settings_of(const ModelInput& input) {
   const double stiffness_ratio = input.material("stiffness_ratio");
   const auto shear_ratio = input.optional_material("shear_ratio");
   const GivenLaw given = given_law(input);
-  Law law{.loading = loading_law_of(given, stiffness_ratio, shear_ratio),
-          .hertz_stiffness = hertz_stiffness(stiffness_ratio, input.material("nu0")),
-          .unloading = UnloadingRule(),
-          .reservations = {}};
+  ContactSettings settings{.law = loading_law_of(given, stiffness_ratio, shear_ratio),
+                           .hertz_stiffness = hertz_stiffness(stiffness_ratio, input.material("nu0")),
+                           .yield_pressure = input.material("yield_pressure")};
   if (is_extrapolated(given, stiffness_ratio)) {
-    law.reservations.push_back({"softer than the materials that delta_t and a were fitted to, from 4.5 on",
-                                "stiffness_ratio", stiffness_ratio});
+    settings.reservations.push_back({"softer than the materials that delta_t and a were fitted to, from 4.5 on",
+                                     "stiffness_ratio", stiffness_ratio});
   }
   if (const SampledCurve* table = input.curve("unloading_table")) {
-    law.unloading = tabulated_rule(*table, stiffness_ratio / *shear_ratio);
-    return law;
+    settings.unloading = tabulated_rule(*table, stiffness_ratio / *shear_ratio);
+    return settings;
   }
   const UnloadingShape hertz;
   const auto alpha = input.number("alpha");
   const auto beta = input.number("beta");
-  law.unloading = UnloadingRule(UnloadingShape{alpha.value_or(hertz.exponent), beta.value_or(hertz.stiffness_ratio)});
+  settings.unloading =
+      UnloadingRule(UnloadingShape{alpha.value_or(hertz.exponent), beta.value_or(hertz.stiffness_ratio)});
   if (!alpha) {
-    law.reservations.push_back(
+    settings.reservations.push_back(
         {"the source has no law for alpha, and it is not given; Hertz's stands in", "alpha", hertz.exponent});
   }
   if (!beta) {
-    law.reservations.push_back(
+    settings.reservations.push_back(
         {"the source has no law for beta, and it is not given; Hertz's stands in", "beta", hertz.stiffness_ratio});
   }
-  return law;
+  return settings;
 }
 
 std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach) {
-  const Law law = law_of(input);
-  const ContactSettings settings{.law = law.loading,
-                                 .hertz_stiffness = law.hertz_stiffness,
-                                 .unloading = law.unloading,
-                                 .initial_radius = input.radius,
-                                 .yield_pressure = input.material("yield_pressure"),
-                                 .reservations = law.reservations,
-                                 .largest_displacement = reach.displacement,
-                                 .largest_force = reach.force,
-                                 .centre_is_free = input.centre_is_free};
-  return std::make_unique<ContactSystem>(settings, std::move(classes));
+  return std::make_unique<ContactSystem>(
+      WallLaw(settings_of(input)), contacts::Settings{input.radius, reach, input.centre_is_free}, std::move(classes));
 }
 
 /// pi R0^2 sigma_y0 [N].
@@ -202,7 +185,7 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
   std::vector<DerivedParameter> list = material_parameters(
       input,
       {{"stiffness_ratio", "-"}, {"shear_ratio", "-"}, {"tensile_ratio", "-"}, {"nu0", "-"}, {"yield_pressure", "Pa"}});
-  const auto [law, hertz_stiffness, unloading, reservations] = law_of(input);
+  const auto [law, hertz_stiffness, unloading, yield_pressure, reservations] = settings_of(input);
   const double transition_force = law.stiffness * law.transition;
   list.push_back({"k", law.stiffness, "-", "k"});
   list.push_back({"delta_t", law.transition, "-", "delta_t"});

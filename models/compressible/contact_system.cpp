@@ -6,11 +6,6 @@
 #include "system/resolution.hpp"
 
 namespace monograin::compressible {
-namespace {
-
-// Distance from 1 within which a ratio of slopes counts as 1.
-
-}  // namespace
 
 double WallLaw::unit_force(double radius) const noexcept {
   return std::numbers::pi * radius * radius * settings_.yield_pressure;

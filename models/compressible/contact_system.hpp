@@ -14,13 +14,8 @@ struct ContactSettings {
   LoadingLaw law{};
   double hertz_stiffness = 1.0;  ///< k_H > 0
   UnloadingRule unloading{};
-  double initial_radius = 1.0;             ///< R0 [m]
   double yield_pressure = 1.0;             ///< sigma_y0 [Pa]
   std::vector<Diagnostic> reservations{};  ///< warnings for the user about these numbers
-  /// As contacts::Settings.
-  double largest_displacement = 0.0;
-  double largest_force = 0.0;
-  bool centre_is_free = false;
 };
 
 /// Law of one contact, for contacts::IndependentContacts.

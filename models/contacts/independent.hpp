@@ -38,7 +38,6 @@
 /// of the program alone.
 #pragma once
 
-#include <concepts>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -54,10 +53,8 @@ namespace monograin::contacts {
 
 struct Settings {
   double initial_radius = 1.0;  ///< R0 [m], > 0
-  /// Largest displacement [m] and force [N] that the program prescribes a wall. They give the scales of the unknowns,
-  /// to which absolute tolerances are relative. 0: unknown.
-  double largest_displacement = 0.0;
-  double largest_force = 0.0;
+  /// Gives the scales of the unknowns, to which absolute tolerances are relative. 0: unknown.
+  Reach reach{};
   bool centre_is_free = false;  ///< the centre moves so that the forces balance
 };
 
@@ -73,7 +70,7 @@ class IndependentContacts final : public HybridSystem {
         displacements_(classes_.size()),
         followers_(law_, classes_),
         columns_(stores_energy(), k_has_contact_area<Law>, Law::k_regimes, classes_, settings.centre_is_free),
-        scales_(scales_of(law_, settings.largest_displacement / units_.length, settings.largest_force / units_.force)) {
+        scales_(scales_of(law_, settings.reach.displacement / units_.length, settings.reach.force / units_.force)) {
     for (std::size_t i = 0; i < classes_.size(); ++i) {
       if (!classes_[i].takes_force) continue;
       slots_[i] = unknowns_.size();
@@ -84,14 +81,6 @@ class IndependentContacts final : public HybridSystem {
     if (settings.centre_is_free) centre_.emplace(classes_, scales_.reach, unknowns_);
     trial_.resize(unknowns_.size());
   }
-  /// Makes law and Settings from the settings of a model.
-  template <class OfModel>
-  requires std::constructible_from<Law, OfModel> IndependentContacts(const OfModel& settings,
-                                                                     std::vector<ContactClass> classes)
-      : IndependentContacts(
-            Law(settings),
-            {settings.initial_radius, settings.largest_displacement, settings.largest_force, settings.centre_is_free},
-            std::move(classes)) {}
 
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return unknowns_; }
   [[nodiscard]] std::span<const ContactClass> classes() const noexcept override { return classes_; }

@@ -61,8 +61,8 @@ template <auto law_of>
         throw std::runtime_error("the functions of the law do not belong together: " + found);
       }
     }
-    return std::make_unique<IndependentContacts<Law>>(
-        law, Settings{input.radius, reach.displacement, reach.force, input.centre_is_free}, std::move(classes));
+    return std::make_unique<IndependentContacts<Law>>(law, Settings{input.radius, reach, input.centre_is_free},
+                                                      std::move(classes));
   };
   return model;
 }

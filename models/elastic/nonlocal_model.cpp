@@ -102,8 +102,7 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
                           .initial_radius = input.radius,
                           .youngs_modulus = input.material("youngs_modulus"),
                           .centre = centre_of(input),
-                          .largest_displacement = reach.displacement,
-                          .largest_force = reach.force};
+                          .reach = reach};
   return std::make_unique<System>(settings, std::move(classes));
 }
 

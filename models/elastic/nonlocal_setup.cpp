@@ -27,9 +27,9 @@ constexpr double k_idle = 1e-6;
 
 /// Depth of the deepest contact that the program asks for, over R0; 0 if it asks for none.
 double greatest_depth(const Settings& settings, const Contacts& contacts) {
-  const double depth = settings.largest_displacement / settings.initial_radius;
-  if (!(settings.largest_force > 0.0)) return depth;
-  const double force = settings.largest_force / settings.force_unit();
+  const double depth = settings.reach.displacement / settings.initial_radius;
+  if (!(settings.reach.force > 0.0)) return depth;
+  const double force = settings.reach.force / settings.force_unit();
   const double bearable = std::min(force / contacts.composite_modulus(), contacts.law().greatest_force());
   return std::max(depth, contacts.law().signed_square_under(bearable));
 }

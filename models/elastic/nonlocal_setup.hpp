@@ -16,10 +16,8 @@ struct Settings {
   double initial_radius = 0.0;  ///< R0 [m], > 0
   double youngs_modulus = 0.0;  ///< E [Pa], > 0
   Centre centre = Centre::fixed;
-  /// Largest displacement [m] and force [N] that the program prescribes to a wall. They set the size of the unknowns,
-  /// to which absolute tolerances are relative. 0: not known.
-  double largest_displacement = 0.0;
-  double largest_force = 0.0;
+  /// Gives the scales of the unknowns, to which absolute tolerances are relative. 0: unknown.
+  Reach reach{};
 
   [[nodiscard]] double force_unit() const noexcept { return youngs_modulus * initial_radius * initial_radius; }
 };

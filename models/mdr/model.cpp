@@ -135,8 +135,7 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
   settings.stops_at_cap_intersection = input.toggle("strict");
   settings.pressure_curve = pressure_curve_of(input);
   settings.centre_is_free = input.centre_is_free;
-  settings.largest_displacement = reach.displacement;
-  settings.largest_force = reach.force;
+  settings.reach = reach;
   return std::make_unique<System>(settings, std::move(classes));
 }
 

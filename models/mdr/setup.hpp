@@ -32,10 +32,8 @@ struct Settings {
   std::shared_ptr<const PressureCurve> pressure_curve{};  ///< p_Y/Y over delta/R; null: the source's exponential
   bool stops_at_cap_intersection = false;
   bool centre_is_free = false;  ///< the centre moves so that the wall forces balance
-  /// Largest displacement [m] and force [N] that the program prescribes a wall. They give the scales of the unknowns,
-  /// to which absolute tolerances are relative. 0: unknown.
-  double largest_displacement = 0.0;
-  double largest_force = 0.0;
+  /// Gives the scales of the unknowns, to which absolute tolerances are relative. 0: unknown.
+  Reach reach{};
 };
 
 // Indices of the unknowns in y.

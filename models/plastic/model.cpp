@@ -291,12 +291,9 @@ struct Functions {
   static std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes,
                                             const Reach& reach) {
     Settings settings{.law = make_law(input),
-                      .initial_radius = input.radius,
                       .strength = stress_unit(input),
                       .unloading = can_unload(input) ? Unloading::mdr : Unloading::none,
-                      .largest_displacement = reach.displacement,
-                      .largest_force = reach.force,
-                      .centre_is_free = input.centre_is_free};
+                      .reach = reach};
     if (settings.unloading == Unloading::mdr) {
       settings.poisson_ratio = input.material("poisson_ratio");
       settings.composite_modulus = composite_modulus(input.material("youngs_modulus"), settings.poisson_ratio);
@@ -305,7 +302,8 @@ struct Functions {
       settings.out_of_range = outside_calibration(input.material("youngs_modulus"), input.material("poisson_ratio"),
                                                   settings.strength, semimech->configuration);
     }
-    return std::make_unique<System>(std::move(settings), std::move(classes));
+    return std::make_unique<System>(WallLaw(std::move(settings)),
+                                    contacts::Settings{input.radius, reach, input.centre_is_free}, std::move(classes));
   }
 
   static std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstStep& /*step*/) {

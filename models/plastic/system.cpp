@@ -143,12 +143,12 @@ double WallLaw::stored(const Branch& b, double x) const {
 
 contacts::Magnitudes WallLaw::magnitudes(double reach) const {
   const Law& law = settings_.law;
-  const bool is_said = settings_.largest_displacement > 0.0 || settings_.largest_force > 0.0;
+  const bool is_said = settings_.reach.displacement > 0.0 || settings_.reach.force > 0.0;
   reach = is_said ? std::min(reach, k_far_from_limit * limit(law)) : 0.5 * limit(law);
   // A yield point makes the range before it count, too.
   const double first = boundaries_.empty() || !begins_elastic(law) ? reach : std::min(reach, boundaries_[0].approach);
   // A depth that follows from a force has all its digits, however shallow it is.
-  const double least = settings_.largest_displacement > 0.0 ? k_least_typical : 0.0;
+  const double least = settings_.reach.displacement > 0.0 ? k_least_typical : 0.0;
   // Beyond the fitted range work grows by orders, and a condition may end a program long before its targets.
   return {std::max(first, least), work_per_wall(law, std::min(reach, calibrated_end(law)))};
 }

@@ -22,16 +22,12 @@ enum class Unloading { none, mdr };
 
 struct Settings {
   Law law;
-  double initial_radius = 0.0;  ///< R0 [m], > 0
-  double strength = 0.0;        ///< S [Pa], > 0
+  double strength = 0.0;  ///< S [Pa], > 0
   Unloading unloading = Unloading::none;
   double composite_modulus = 0.0;          ///< E* [Pa], > 0; for unloading only
   double poisson_ratio = 0.0;              ///< for unloading only
   std::vector<OutOfRange> out_of_range{};  ///< properties of the material to which the law was not fitted
-  /// As contacts::Settings.
-  double largest_displacement = 0.0;
-  double largest_force = 0.0;
-  bool centre_is_free = false;
+  Reach reach{};                           ///< as contacts::Settings
 };
 
 /// Law of one contact, for contacts::IndependentContacts.

@@ -153,8 +153,8 @@ void append_auto(const std::vector<BenchScene>& scenes, std::string& text) {
       "\n## `auto`\n\nRatios of times. Columns \"at\": `auto` over the fastest of the other integrators at that error. "
       "Columns \"bdf\": `cvode-bdf`\nover `auto` at that error; \"bdf at its own\" is at the error that `auto` has at "
       "the "
-      "default rtol, and \">\" means that\n`cvode-bdf` only comes to a larger one. \"over the floor\": `auto` over one "
-      "evaluation of the law for each row.\n\n";
+      "default rtol, and \">\" means that\n`cvode-bdf` only comes to a larger one. \"over the floor\": `auto` over "
+      "one evaluation of the law for each row.\n\n";
   std::vector<MarkdownRow> rows{{"scene", "is"}};
   for (const double error : k_errors) rows.front().push_back(fmt::format("at {:.0e}", error));
   for (const double error : k_errors) rows.front().push_back(fmt::format("bdf at {:.0e}", error));

@@ -165,7 +165,7 @@ inline Settings unit_settings(Centre centre = Centre::fixed) {
           .initial_radius = 1.0,
           .youngs_modulus = 1.0,
           .centre = centre,
-          .largest_displacement = 0.3};
+          .reach = {.displacement = 0.3}};
 }
 
 }  // namespace monograin::nonlocal

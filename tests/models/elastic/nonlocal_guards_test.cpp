@@ -96,7 +96,7 @@ TEST(NonlocalGuards, StopAStepThatBeginsAtALimitAndLeadsBeyond) {
   Settings settings = unit_settings();
   settings.model.terms = Terms::one;
   settings.radius_rule = RadiusRule::none;
-  settings.largest_displacement = 1.0;
+  settings.reach.displacement = 1.0;
   const std::vector<ContactClass> wall{{.name = "wall", .normals = {Eigen::Vector3d::UnitZ()}}};
   const auto at_centre = [&](double target) {
     Particle particle(settings, wall);

@@ -113,9 +113,9 @@ TEST(NonlocalSetup, TakesItsScalesFromTheProgram) {
   };
   EXPECT_EQ(scales().depth, 0.3);
   EXPECT_FALSE(scales().is_shallow);
-  settings.largest_displacement = 1e-13;
+  settings.reach.displacement = 1e-13;
   EXPECT_TRUE(scales().is_shallow);
-  settings.largest_displacement = 2.0;
+  settings.reach.displacement = 2.0;
   EXPECT_EQ(scales().depth, 1.0);
   EXPECT_FALSE(scales().greatest_approach.has_value());
   settings.model.terms = Terms::all;
