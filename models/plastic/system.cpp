@@ -18,27 +18,20 @@ constexpr double k_far_from_limit = 0.9;
 // gamma/2R from which on semimech agrees with finite elements.
 constexpr double k_least_trusted = 0.03;
 
-/// Warning of a run of semimech that stays below k_least_trusted, by configuration: the force against finite elements
-/// (at gamma/2R = 0.02 and 0.005), and D1^2 over the range of lambda to which the source fitted the law.
-std::string_view early_stiffness_warning(Configuration configuration) noexcept {
-  switch (configuration) {
-    case Configuration::simple:
-      return "the whole run lies where the law is too stiff: below displacement/R0 = 0.03 its force (simple) is 19 to "
-             "58 % "
-             "above finite elements, and in the elastic regime 2.20 to 3.06 times that of Hertz over the fitted "
-             "materials";
-    case Configuration::die:
-      return "the whole run lies where the law is too stiff: below displacement/R0 = 0.03 its force (die) is 18 to 50 "
-             "% "
-             "above finite elements, and in the elastic regime 2.30 to 3.21 times that of Hertz over the fitted "
-             "materials";
-    case Configuration::hydrostatic:
-      return "the whole run lies where the law is too stiff: below displacement/R0 = 0.03 its force (hydrostatic) is "
-             "15 to "
-             "66 % above finite elements, and in the elastic regime 2.57 to 3.58 times that of Hertz over the fitted "
-             "materials";
-  }
-  return {};
+/// Warning of a run of semimech that stays below k_least_trusted: the force against finite elements (at gamma/2R = 0.02
+/// and 0.005), and D1^2 over the range of lambda to which the source fitted the law.
+std::string early_stiffness_warning(Configuration configuration) {
+  struct Excess {
+    const char *over_finite_elements, *over_hertz;
+  };
+  // In the order of Configuration.
+  constexpr std::array<Excess, 3> k_excess{
+      {{"19 to 58", "2.20 to 3.06"}, {"18 to 50", "2.30 to 3.21"}, {"15 to 66", "2.57 to 3.58"}}};
+  const Excess& excess = k_excess[static_cast<std::size_t>(configuration)];
+  return "the whole run lies where the law is too stiff: below displacement/R0 = 0.03 its force (" +
+         std::string(name(configuration)) + ") is " + excess.over_finite_elements +
+         " % above finite elements, and in the elastic regime " + excess.over_hertz +
+         " times that of Hertz over the fitted materials";
 }
 
 bool is_die(const Law& law) noexcept {
@@ -59,10 +52,6 @@ WallLaw::WallLaw(Settings settings)
   if (const auto* semimech = std::get_if<SemimechLaw>(&law); semimech != nullptr && is_die(law)) {
     lateral_law_ = make_lateral(*semimech);
     lateral_boundaries_ = boundaries(*semimech, *lateral_law_);
-  }
-  for (const OutOfRange& out : settings_.out_of_range) {
-    range_messages_.push_back(std::string(out.quantity) + " is outside " + number_text(out.lower) + " to " +
-                              number_text(out.upper) + ", over which the source fitted the law");
   }
 }
 
@@ -257,8 +246,10 @@ contacts::VisibleContact WallLaw::follower(const Branch& leader, bool touches, d
 
 std::vector<Diagnostic> WallLaw::warnings(double /*walls*/) const {
   std::vector<Diagnostic> result;
-  for (std::size_t k = 0; k < range_messages_.size(); ++k) {
-    result.push_back({range_messages_[k], settings_.out_of_range[k].quantity, settings_.out_of_range[k].value});
+  for (const OutOfRange& out : settings_.out_of_range) {
+    result.push_back({std::string(out.quantity) + " is outside " + number_text(out.lower) + " to " +
+                          number_text(out.upper) + ", over which the source fitted the law",
+                      out.quantity, out.value});
   }
   if (farthest_ > calibrated_end(settings_.law)) {
     result.push_back({"the walls have gone farther than the source compares the law with its calculations",

@@ -95,7 +95,6 @@ class WallLaw {
   Boundaries boundaries_{};
   Boundaries lateral_boundaries_{};
   std::optional<double> impingement_{};
-  std::vector<std::string> range_messages_{};
 
   double farthest_ = 0.0;                 ///< largest x in a row
   bool has_lateral_gap_ = false;          ///< a lateral contact was undefined

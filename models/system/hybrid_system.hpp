@@ -75,7 +75,7 @@ struct Event {
 
 /// A warning for the user, with the value of the quantity that caused it.
 struct Diagnostic {
-  std::string_view message;
+  std::string message;
   std::string_view quantity;  ///< name of the quantity, e.g. "E/Y"
   double value = 0.0;
 };
