@@ -33,7 +33,6 @@ class System final : public HybridSystem {
   }
   void complete(double xi, std::span<double> y) override;
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
-  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   [[nodiscard]] bool is_semi_explicit() const noexcept override { return false; }
   [[nodiscard]] bool is_solvable() const noexcept override { return !particle_.layout().has_core(); }

@@ -150,8 +150,6 @@ void MaterialPoint::solve(double xi, std::span<double> y) {
   complete(xi, y);
 }
 
-std::optional<double> MaterialPoint::closed_quadrature(double, std::span<const double>) { return std::nullopt; }
-
 // --- modes
 
 void MaterialPoint::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {

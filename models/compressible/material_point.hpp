@@ -48,10 +48,8 @@ class MaterialPoint final : public HybridSystem {
   void complete(double xi, std::span<double> y) override;
   [[nodiscard]] bool has_corrections() const noexcept override { return true; }
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
-  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   void solve(double xi, std::span<double> y) override;
-  [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_; }
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override;
   std::optional<DomainEnd> fire(std::span<const std::size_t> fired, double xi, std::span<double> y,

@@ -35,7 +35,6 @@ class System final : public HybridSystem {
   }
   void complete(double xi, std::span<double> y) override { now_.particle.clear_centre(xi, y); }
   void rates(double xi, std::span<const double> y, std::span<double> dy) override { now_.particle.rates(xi, y, dy); }
-  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override {
     now_.particle.residual(xi, y, dy, res);
   }

@@ -41,12 +41,8 @@ class System final : public HybridSystem {
   }
   void complete(double xi, std::span<double> y) override;
   void rates(double xi, std::span<const double> y, std::span<double> dy) override;
-  void all_rates(double xi, std::span<const double> y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   void solve(double xi, std::span<double> y) override;
-  [[nodiscard]] std::optional<double> closed_quadrature(double /*xi*/, std::span<const double> /*y*/) override {
-    return std::nullopt;
-  }
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return guards_.list(); }
   void guard_values(double xi, std::span<const double> /*y*/, std::span<double> values) override {
     guards_.distances(ramp_, xi, values);
@@ -58,7 +54,6 @@ class System final : public HybridSystem {
   /// @throws std::logic_error always: the language offers no condition but events
   [[nodiscard]] double quantity(Quantity quantity, int channel, double xi, std::span<const double> y) override;
   [[nodiscard]] double controlled(Control control, int channel, double xi, std::span<const double> y) override;
-  [[nodiscard]] std::vector<Diagnostic> warnings() const override { return {}; }
 
  private:
   [[nodiscard]] bool is_jammed() const noexcept { return mode_ != Mode::unjammed; }

@@ -184,8 +184,9 @@ class HybridSystem {
   /// Computes d/dxi of differential unknowns and quadratures, for a y that complete() has completed.
   virtual void rates(double xi, std::span<const double> y, std::span<double> dy) = 0;
 
-  /// Computes d/dxi of every unknown, algebraic ones included, as a consistent start for implicit integrators.
-  virtual void all_rates(double xi, std::span<const double> y, std::span<double> dy) = 0;
+  /// Computes d/dxi of every unknown, algebraic ones included, as a consistent start for implicit integrators. These
+  /// are the rates of rates() unless a system overrides this.
+  virtual void all_rates(double xi, std::span<const double> y, std::span<double> dy) { rates(xi, y, dy); }
 
   /// Computes the residual of the implicit form, one value for each unknown.
   virtual void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) = 0;
@@ -218,7 +219,9 @@ class HybridSystem {
   virtual double leave_singularity(double xi, std::span<double> /*y*/) { return xi; }
 
   /// Primitive of the quadrature in the present mode, up to a constant; empty if it has no closed form.
-  [[nodiscard]] virtual std::optional<double> closed_quadrature(double xi, std::span<const double> y) = 0;
+  [[nodiscard]] virtual std::optional<double> closed_quadrature(double /*xi*/, std::span<const double> /*y*/) {
+    return std::nullopt;
+  }
   /// True if closed_quadrature() costs tens of evaluations of the law, because it integrates numerically.
   [[nodiscard]] virtual bool is_quadrature_costly() const noexcept { return false; }
 
@@ -262,7 +265,7 @@ class HybridSystem {
   }
 
   /// Warnings for the user that this run has collected so far.
-  [[nodiscard]] virtual std::vector<Diagnostic> warnings() const = 0;
+  [[nodiscard]] virtual std::vector<Diagnostic> warnings() const { return {}; }
 
   /// Largest change of each unknown between two calls of solve() that cannot skip a branch of solutions; infinite if
   /// the solution is unique.

@@ -84,7 +84,6 @@ class ToySystem final : public HybridSystem {
     ++rates_count;
     rates_function(xi, y, dy);
   }
-  void all_rates(double xi, View y, std::span<double> dy) override { rates(xi, y, dy); }
   void residual(double xi, View y, View dy, std::span<double> res) override {
     rates(xi, y, res);
     for (std::size_t k = 0; k < res.size(); ++k) res[k] = dy[k] - res[k];
@@ -123,8 +122,6 @@ class ToySystem final : public HybridSystem {
     return control == Control::force ? y[0] : xi;
   }
   [[nodiscard]] bool contacts_adhere() const noexcept override { return adheres; }
-  [[nodiscard]] bool is_open(int) const noexcept override { return false; }
-  [[nodiscard]] std::vector<Diagnostic> warnings() const override { return {}; }
 
  private:
   void see(double xi) {
