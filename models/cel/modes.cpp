@@ -86,7 +86,7 @@ void decide_flow(Particle& p, Motion& motion, double xi, std::span<const double>
 }
 
 double value_of(const Guard& guard, const Particle& p, const Motion& motion, double xi) {
-  const auto i = static_cast<std::size_t>(std::max(0, guard.index));
+  const std::size_t i = guard.place();
   const ClassState& c = p.classes[i];
   const double dent_rate = motion.rates()[p.layout().dent(i)];
   switch (guard.kind) {

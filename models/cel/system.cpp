@@ -226,7 +226,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       return end_at(guard, particle_, xi);
     }
     if (guard.kind > k_lost) continue;
-    const auto i = static_cast<std::size_t>(guard.index);
+    const std::size_t i = guard.place();
     ClassState& c = particle_.classes[i];
     c.touches = guard.kind == k_made && !c.gives_way;
     if (!guard.is_silent) log.push_back({guard.name, guard.index});

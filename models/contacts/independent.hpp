@@ -199,7 +199,7 @@ class IndependentContacts final : public HybridSystem {
     for (std::size_t g = 0; g < guards_.list().size(); ++g) {
       const Guard& guard = guards_.list()[g];
       const double target = guards_.target(g);
-      const auto i = static_cast<std::size_t>(guard.index);
+      const std::size_t i = guard.place();
       if (follows_centre(i)) {
         values[g] = centre_->guard_value(law_, contacts_, i, guard.kind, target, xi, y, velocity);
         continue;
@@ -214,7 +214,7 @@ class IndependentContacts final : public HybridSystem {
                                 std::vector<Event>& log) override {
     for (const std::size_t g : fired) {
       const Guard& guard = guards_.list()[g];
-      const auto i = static_cast<std::size_t>(guard.index);
+      const std::size_t i = guard.place();
       Contact& c = contacts_[i];
       std::optional<DomainEnd> end;
       if (guard.kind == k_made)
@@ -361,8 +361,7 @@ class IndependentContacts final : public HybridSystem {
                                      std::span<const std::size_t> fired) {
     if (!centre_) return std::nullopt;
     const auto is_decided = [&](std::size_t i) {
-      return std::ranges::any_of(fired,
-                                 [&](std::size_t g) { return static_cast<std::size_t>(guards_.list()[g].index) == i; });
+      return std::ranges::any_of(fired, [&](std::size_t g) { return guards_.list()[g].place() == i; });
     };
     return centre_->find(
         law_, contacts_, xi, y, is_decided, [this](std::size_t i) { return is_seen(i); }, log);

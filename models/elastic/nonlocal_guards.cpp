@@ -15,7 +15,6 @@ namespace {
 constexpr double k_least_margin = 1e-5;
 
 int as_int(std::size_t index) noexcept { return static_cast<int>(index); }
-std::size_t index_of(const Guard& guard) noexcept { return static_cast<std::size_t>(std::max(0, guard.index)); }
 
 /// Angles at which walls of two classes may meet on the surface, each listed once.
 /// @param is_one  true if both classes are the same one
@@ -36,11 +35,11 @@ std::vector<double> meeting_angles(const ContactClass& first, const ContactClass
 double limit_value(Particle& p, const Guard& guard, double xi) {
   const Scales& scales = p.scales();
   if (guard.kind == k_radius) {
-    const ContactState& contact = p.contact(index_of(guard));
+    const ContactState& contact = p.contact(guard.place());
     return scales.greatest_approach ? 1.0 - contact.approach / *scales.greatest_approach
                                     : scales.widest - contact.contact_radius;
   }
-  if (guard.kind == k_centre) return 1.0 - p.depth(index_of(guard), xi);
+  if (guard.kind == k_centre) return 1.0 - p.depth(guard.place(), xi);
   // Vanishes where the margin is k_least_margin, in whatever order the walls are eliminated.
   return p.contacts().least_pivot(p.state(), k_least_margin);
 }
@@ -156,7 +155,7 @@ void GuardSet::values(Particle& p, double xi, std::span<const double> y, std::sp
   std::ranges::fill(edge_angles_, k_nan);
   const Scales& scales = p.scales();
   for (std::size_t g = 0; g < list_.size(); ++g) {
-    const std::size_t index = index_of(list_[g]);
+    const std::size_t index = list_[g].place();
     switch (list_[g].kind) {
       case k_made:
         values[g] = (p.state()[index] - scales.touch) / scales.guard_unit;

@@ -64,6 +64,9 @@ struct Guard {
   bool is_branch_end = false;
   /// The guard is monotone over the rest of the step: its values at two instants show whether it crosses between them.
   bool is_monotone = false;
+
+  /// `index` as a place in a list; 0 where there is none.
+  [[nodiscard]] std::size_t place() const noexcept { return static_cast<std::size_t>(std::max(0, index)); }
 };
 
 /// A regime transition or other located instant.
