@@ -12,6 +12,11 @@ double hertz_force(double composite_modulus, double radius, double overlap) noex
   return overlap <= 0.0 ? 0.0 : 4.0 / 3.0 * composite_modulus * std::sqrt(radius * overlap) * overlap;
 }
 
+double hertz_overlap(double composite_modulus, double radius, double force) noexcept {
+  const double root = std::cbrt(0.75 * force / (composite_modulus * std::sqrt(radius)));
+  return root * root;
+}
+
 double hertz_contact_radius(double radius, double overlap) noexcept {
   return overlap <= 0.0 ? 0.0 : std::sqrt(radius * overlap);
 }

@@ -20,6 +20,9 @@ namespace monograin {
 /// checked).
 [[nodiscard]] double hertz_force(double composite_modulus, double radius, double overlap) noexcept;
 
+/// Overlap under a force >= 0 [m], delta = (3 F/(4 E* sqrt(R)))^(2/3).
+[[nodiscard]] double hertz_overlap(double composite_modulus, double radius, double force) noexcept;
+
 /// Contact radius of an elastic sphere against a rigid flat wall [m], a = sqrt(R delta); 0 without contact.
 [[nodiscard]] double hertz_contact_radius(double radius, double overlap) noexcept;
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <string_view>
 
 #include "contacts/independent.hpp"
@@ -25,10 +24,7 @@ struct WallLaw {
   [[nodiscard]] double unit_force(double radius) const noexcept { return composite_modulus * radius * radius; }
   [[nodiscard]] double force(Branch, double d) const noexcept { return hertz_force(1.0, 1.0, d); }
   [[nodiscard]] double slope(Branch, double d) const noexcept { return 2.0 * hertz_contact_radius(1.0, d); }
-  [[nodiscard]] double displacement(Branch, double force) const noexcept {
-    const double root = std::cbrt(0.75 * force);
-    return root * root;
-  }
+  [[nodiscard]] double displacement(Branch, double force) const noexcept { return hertz_overlap(1.0, 1.0, force); }
   [[nodiscard]] double opening(Branch) const noexcept { return 0.0; }
   [[nodiscard]] double work(Branch, double d) const noexcept { return hertz_energy(1.0, 1.0, d); }
   [[nodiscard]] double stored(Branch, double d) const noexcept { return hertz_energy(1.0, 1.0, d); }

@@ -317,10 +317,8 @@ double elastic_overlap(ElasticProfile profile, double composite_modulus, double 
       const double sine = std::sin(0.5 * inverse_phi(value));
       return 4.0 * radius * sine * sine;
     }
-    case ElasticProfile::parabola: {
-      const double root = std::cbrt(0.75 * force / (composite_modulus * std::sqrt(radius)));
-      return root * root;
-    }
+    case ElasticProfile::parabola:
+      return hertz_overlap(composite_modulus, radius, force);
   }
   return 0.0;
 }

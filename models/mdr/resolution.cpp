@@ -17,8 +17,7 @@ bool is_below_resolution(const Particle& p, double overlap) {
 }  // namespace
 
 double resolution(const Particle& p) {
-  return std::max(k_resolution, elastic_overlap(ElasticProfile::parabola, p.law().material.composite_modulus, 1.0,
-                                                p.force_round_off()));
+  return std::max(k_resolution, hertz_overlap(p.law().material.composite_modulus, 1.0, p.force_round_off()));
 }
 
 bool is_idle(const Particle& p, std::size_t i) {

@@ -62,7 +62,7 @@ double Setup::largest_overlap_expected() const {
   double reach = std::min(1.0, settings.reach.displacement / settings.initial_radius);
   const double force = settings.reach.force / force_unit();
   if (force > 0.0) {
-    const double elastic = elastic_overlap(ElasticProfile::parabola, law.material.composite_modulus, 1.0, force);
+    const double elastic = hertz_overlap(law.material.composite_modulus, 1.0, force);
     const double plastic = std::isfinite(law.material.yield_overlap_ratio) ? force / (2.0 * pi) : 0.0;
     reach = std::max(reach, std::min(1.0, std::max(elastic, plastic)));
   }
