@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "system/resolution.hpp"
-
 namespace monograin::mdr {
 namespace {
 
@@ -53,22 +51,6 @@ AdhesionValidity adhesion_validity(double critical_radius, double peak_radius, d
   if (peak_radius > 0.0 && critical_radius <= peak_radius) return AdhesionValidity::peak_failure;
   if (2.0 * critical_radius < k_zones_per_diameter * plastic_zone_size) return AdhesionValidity::yielding_failure;
   return AdhesionValidity::valid;
-}
-
-SurfaceEnergyWindow adhesion_window(const Indenter& indenter, double composite_modulus, double yield_stress,
-                                    double peak_radius, Control control) noexcept {
-  const double b = indenter.half_width;
-  const double xi = control == Control::force ? 3.0 : 1.0;
-  const double slope = 0.5 * indenter.height / b;
-  // The critical radius depends on k = c dg; for the parabola its equation has no quadratic term.
-  const double c = 0.5 * xi * xi * pi / (composite_modulus * slope * slope);
-
-  const double rest = indenter.is_parabola() ? b * b : (b - peak_radius) * (b + peak_radius);
-  const double least = rest > 0.0 ? peak_radius * peak_radius * peak_radius / (c * rest) : k_infinity;
-  // a_c = zones dg
-  const double zones = 0.5 * k_zones_per_diameter * composite_modulus / (pi * yield_stress * yield_stress);
-  const double cubic = zones * zones * (indenter.is_parabola() ? zones : zones + c);
-  return {.least = least, .greatest = b * std::sqrt(c / cubic)};
 }
 
 }  // namespace monograin::mdr

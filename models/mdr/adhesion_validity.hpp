@@ -52,17 +52,4 @@ enum class AdhesionValidity {
 [[nodiscard]] AdhesionValidity adhesion_validity(double critical_radius, double peak_radius,
                                                  double plastic_zone_size) noexcept;
 
-/// Surface energies for which a contact is valid, from least (excluded) to greatest; empty where least > greatest.
-struct SurfaceEnergyWindow {
-  double least = 0.0;     ///< a_c = r_peak; 0 without a ring, infinity where the ring reaches the half width b
-  double greatest = 0.0;  ///< 2 a_c = 15 r_Ip (F.17); infinity where nothing yields
-};
-
-/// Both bounds in closed form: eq. 15 of an ellipse, a_c^3 + k a_c^2 - k b^2 = 0 with k proportional to dg, is linear
-/// in dg at a given a_c, and quadratic at a given a_c/dg.
-/// @param yield_stress  Y > 0 or infinity
-/// @param peak_radius   r_peak >= 0
-[[nodiscard]] SurfaceEnergyWindow adhesion_window(const Indenter& indenter, double composite_modulus,
-                                                  double yield_stress, double peak_radius, Control control) noexcept;
-
 }  // namespace monograin::mdr

@@ -368,14 +368,6 @@ Boundaries boundaries(const SemimechLaw& law, const LateralLaw& lateral) {
   return list;
 }
 
-Regime lateral_regime_at(const SemimechLaw& law, const LateralLaw& lateral, double x) noexcept {
-  if (!(x > 0.0)) return Regime::open;
-  if (x <= LateralLaw::small_range_end) {
-    return x <= lateral.yield_approach ? Regime::elastic : Regime::elastic_plastic;
-  }
-  return x < lateral.onset ? Regime::undefined : regime_at(law, x);
-}
-
 ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral, Regime regime, double x) {
   if (regime == Regime::open) return {};
   if (regime == Regime::elastic || regime == Regime::elastic_plastic) {
@@ -399,11 +391,6 @@ ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral,
     state.pressure_by_approach = primary.pressure_by_approach;
   }
   return state;
-}
-
-ContactState lateral_state_at(const SemimechLaw& law, const LateralLaw& lateral, double x) {
-  require_approach_below(x, SemimechLaw::limit, Limit::walls_meet);
-  return lateral_state_in(law, lateral, lateral_regime_at(law, lateral, x), x);
 }
 
 }  // namespace monograin::plastic

@@ -135,21 +135,13 @@ constexpr double k_greatest_lateral_modulus_over_yield = 4954.40;
 [[nodiscard]] ValueAndSlope lateral_approach(const LateralLaw& lateral, double x) noexcept;
 
 /// Ends of a lateral contact's regimes, in terms of the primary x: `yield`, the end of the small range and zero
-/// porosity (no events of the lateral contact: empty names), and `secondary-onset`.
+/// porosity (no events of the lateral contact: empty names), and `secondary-onset`. `undefined` between the two ranges.
 [[nodiscard]] Boundaries boundaries(const SemimechLaw& law, const LateralLaw& lateral);
-
-/// Regime of a lateral contact at x. A boundary belongs to the regime before it, except the onset; x <= 0 is open.
-/// `undefined` between the two ranges.
-[[nodiscard]] Regime lateral_regime_at(const SemimechLaw& law, const LateralLaw& lateral, double x) noexcept;
 
 /// State of a lateral contact by the formulas of one regime, with derivatives with respect to the primary x > 0.
 /// `elastic` and `elastic_plastic`: that of a primary contact at x_s. `low_compressibility` and `elastic_volumetric`:
 /// the pressure of the primary contacts, everything else NaN. `undefined`: NaN.
 /// @throws std::domain_error as state_in
 [[nodiscard]] ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral, Regime regime, double x);
-
-/// State of a lateral contact at x, in the regime that belongs to x.
-/// @throws std::domain_error as state_at
-[[nodiscard]] ContactState lateral_state_at(const SemimechLaw& law, const LateralLaw& lateral, double x);
 
 }  // namespace monograin::plastic
