@@ -98,11 +98,9 @@ constexpr std::array<string_view, 9> k_domain{
     "at yield under a prescribed force (ellipse) the wall gives way at once and takes the apparent radius along: at "
     "E/Y = 10 by 1.5e-4 R0 between two walls and 4.1e-4 R0 between six, less for stiffer particles",
     "under a prescribed force a plastic contact that has softened to 1 % of its first stiffness, at overlaps of nine "
-    "tenths "
-    "of the apparent radius, ends the run: at a given radius it bears no more than a largest force",
+    "tenths of the apparent radius, ends the run: at a given radius it bears no more than a largest force",
     "a mode in which every contact's branch agrees with its motion need not exist (several loaded walls while the "
-    "radius "
-    "grows): the run stops there",
+    "radius grows): the run stops there",
     "warned: dissipation that falls by more than 1e-6 of the energy. radius_rule yielded, where plastic contacts alone "
     "make the radius grow, is the default because it creates none without adhesion for E/Y above 10; gated and seed, "
     "which the source's "

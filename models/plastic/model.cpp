@@ -171,8 +171,7 @@ constexpr std::array k_hardening_events{
 constexpr string_view k_loading_only = "walls only come nearer, unless unloading = \"mdr\"";
 constexpr string_view k_extension =
     "unloading = \"mdr\" is not of the source: A = 4 p a/E*, b = a, and the unloading branch of model mdr; a contact "
-    "that "
-    "has not yielded unloads along its loading curve";
+    "that has not yielded unloads along its loading curve";
 
 constexpr string_view k_energy =
     "warned: dissipation that falls by more than 1e-6 of the energy, possible with unloading = \"mdr\" where the "
@@ -190,8 +189,7 @@ constexpr string_view k_hardening_energy =
 constexpr std::array<string_view, 7> k_similarity_domain{
     "small strains: the source sees the law leave its calculations at displacement/R0 of about 0.03; a warning beyond",
     "against finite elements (1/m = 0.327, two walls) the force is too high by 15, 32 and 68 % at displacement/R0 = "
-    "0.01, "
-    "0.03 and 0.1",
+    "0.01, 0.03 and 0.1",
     "every contact is independent of the others",
     "displacement/R0 below 1",
     k_loading_only,
@@ -207,17 +205,12 @@ constexpr std::array<string_view, 12> k_semimech_domain{
     "elastic regime: the pressure is Hertz's but the contact radius is not, so the force is D1^2 times that of Hertz: "
     "1.35 to 3.07 (simple), 1.42 to 3.22 (die), 1.58 to 3.59 (hydrostatic)",
     "too stiff below displacement/R0 = 0.03 against finite elements, at 0.005, 0.01, 0.02 by 58, 35, 19 % (simple), "
-    "50, 33, "
-    "18 % (die), 66, 37, 15 % (hydrostatic); a warning where a whole run lies there",
+    "50, 33, 18 % (die), 66, 37, 15 % (hydrostatic); a warning where a whole run lies there",
     "lateral contacts of a die: forces 2.1 to 3.5 times those of finite elements for axial displacement/R0 from 0.03 "
-    "to 0.1; "
-    "a "
-    "warning",
+    "to 0.1; a warning",
     "the law's second derivative jumps at its regime boundaries and is infinite just after the greatest pressure",
     "lateral contacts of a die: force and area for axial displacement/R0 up to 0.1, pressure from the onset (about "
-    "0.41) on, "
-    "nothing "
-    "between; E/((1-nu^2) Y) from 163.08 to 4954.40, a warning outside",
+    "0.41) on, nothing between; E/((1-nu^2) Y) from 163.08 to 4954.40, a warning outside",
     "lateral contacts do not act back on the axial ones",
     k_loading_only,
     k_extension,

@@ -181,8 +181,7 @@ SemimechLaw make_semimech(const SemimechMaterial& material, Configuration config
   const double zeta = material.bulk_over_yield;
   if (!(lambda >= k_least_modulus_over_yield) || !std::isfinite(lambda)) {
     throw std::invalid_argument("E/((1-nu^2) Y) = " + number_text(lambda) +
-                                ": the pressure would have a kink at its maximum; expected a finite number "
-                                "from " +
+                                ": the pressure would have a kink at its maximum; expected a finite number from " +
                                 number_text(k_least_modulus_over_yield) + " on");
   }
   if (is_enclosed(configuration) && !(zeta > 0.0 && std::isfinite(zeta))) {

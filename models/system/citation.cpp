@@ -178,8 +178,7 @@ const Citation k_zunker2024b{.key = "zunker2024b",
                              .authors = "W. Zunker and K. Kamrin",
                              .title =
                                  "A mechanically-derived contact model for adhesive elastic-perfectly plastic "
-                                 "particles. Part II: Contact under high compaction—modeling a bulk elastic "
-                                 "response",
+                                 "particles. Part II: Contact under high compaction—modeling a bulk elastic response",
                              .venue = "Journal of the Mechanics and Physics of Solids",
                              .volume = "183",
                              .pages = "105493",

@@ -6,8 +6,7 @@ std::string_view advice(Difficulty difficulty) noexcept {
   switch (difficulty) {
     case Difficulty::below_resolution:
       return "the program closes no contact by more than 1e-12 of the particle's radius, which is round-off; expected "
-             "a "
-             "deeper one, or integrator = \"direct\"";
+             "a deeper one, or integrator = \"direct\"";
     case Difficulty::stiff_material:
       return "the bulk modulus is above 1e5 yield pressures, and stresses are lost in the round-off of strains; "
              "expected integrator = \"cvode-bdf\"";

@@ -265,8 +265,7 @@ void add_plot_command(CLI::App& app, Action& action) {
       ->check(CLI::NonNegativeNumber);
   command->add_option(
       "--x", options->columns.x,
-      "Column, with or without its unit, for one panel [displacement of the driven walls; each key of a "
-      "sweep]");
+      "Column, with or without its unit, for one panel [displacement of the driven walls; each key of a sweep]");
   command->add_option("--y", options->columns.y,
                       "Column over it [force of the driven walls; the largest first force of a sweep]");
   command->add_option("--unit", options->columns.unit, "Unit of the column over it, e.g. kN [that of the file]");

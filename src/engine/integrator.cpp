@@ -136,8 +136,7 @@ IntegratorChoice choose_integrator(const std::string& asked, const HybridSystem&
   }
   return {asked, switching_name(),
           "the state depends on the path to it, so that it is integrated, in its explicit form: by the cheapest "
-          "method, and "
-          "from the first phase that slows that down by one for stiff equations"};
+          "method, and from the first phase that slows that down by one for stiff equations"};
 }
 
 std::string sundials_version() {

@@ -52,10 +52,9 @@ std::optional<DissipationFall> largest_dissipation_fall(const Table& history, do
 std::optional<std::string> energy_warning(const Table& history, double radius, const std::string& model, double rtol) {
   const auto fall = largest_dissipation_fall(history, radius);
   if (!fall || !(fall->share() > k_least_noted_fall)) return std::nullopt;
-  const std::string where = fmt::format(
-      "dissipation falls by {:.3g} J, {:.2g} of the largest energy, from t = {:.9g} s "
-      "to t = {:.9g} s",
-      fall->amount, fall->share(), fall->from, fall->to);
+  const std::string where =
+      fmt::format("dissipation falls by {:.3g} J, {:.2g} of the largest energy, from t = {:.9g} s to t = {:.9g} s",
+                  fall->amount, fall->share(), fall->from, fall->to);
   if (fall->share() <= k_error_over_rtol * rtol) {
     return fmt::format("{}: the integration may be off by as much at rtol = {:g}", where, rtol);
   }

@@ -551,10 +551,9 @@ class DefinitionReader {
   [[nodiscard]] std::string plain(const Section& section, std::string_view key) {
     const std::string text = section.text(key);
     if (text.find_first_of(",\"|\r\n") != std::string::npos) {
-      faults_.add(section.value_place(key),
-                  fmt::format("{} = \"{}\": commas, quotes, bars and line breaks cannot stand "
-                              "in a table",
-                              key, shown(text)));
+      faults_.add(
+          section.value_place(key),
+          fmt::format("{} = \"{}\": commas, quotes, bars and line breaks cannot stand in a table", key, shown(text)));
     }
     return text;
   }

@@ -133,8 +133,7 @@ std::optional<double> plain_number(Reading& reading, const Section& section, std
   if (!number) {
     reading.faults.add(
         section.value_place(key, entry),
-        fmt::format("{}: '{}' is no number; expected the standard deviation of the natural logarithm, for "
-                    "example 0.1",
+        fmt::format("{}: '{}' is no number; expected the standard deviation of the natural logarithm, for example 0.1",
                     key, shown(text)));
   }
   return number;
@@ -147,10 +146,9 @@ std::optional<double> value_in(Reading& reading, const Section& section, std::st
   if (number.path == k_compliance) {
     const ParsedCompliance parsed = parse_compliance(text);
     if (!parsed.value) {
-      reading.faults.add(section.value_place(key, entry),
-                         fmt::format("{}: '{}': expected a length over a force, for example "
-                                     "\"20 nm/N\"",
-                                     key, shown(text)));
+      reading.faults.add(
+          section.value_place(key, entry),
+          fmt::format("{}: '{}': expected a length over a force, for example \"20 nm/N\"", key, shown(text)));
     }
     return parsed.value;
   }
@@ -203,10 +201,9 @@ void read_prior(Reading& reading, const Section& priors, FreeParameter& paramete
     if (distribution.has(word_of(kind))) given.push_back(kind);
   }
   if (given.size() != 1) {
-    return reading.faults.add(distribution.place(),
-                              fmt::format("a prior with {} distributions; expected one of normal, "
-                                          "lognormal, uniform",
-                                          given.size()));
+    return reading.faults.add(
+        distribution.place(),
+        fmt::format("a prior with {} distributions; expected one of normal, lognormal, uniform", given.size()));
   }
   Prior prior{.kind = given.front()};
   const std::string_view word = word_of(prior.kind);

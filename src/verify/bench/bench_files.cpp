@@ -152,8 +152,7 @@ void append_auto(const std::vector<BenchScene>& scenes, std::string& text) {
   text +=
       "\n## `auto`\n\nRatios of times. Columns \"at\": `auto` over the fastest of the other integrators at that error. "
       "Columns \"bdf\": `cvode-bdf`\nover `auto` at that error; \"bdf at its own\" is at the error that `auto` has at "
-      "the "
-      "default rtol, and \">\" means that\n`cvode-bdf` only comes to a larger one. \"over the floor\": `auto` over "
+      "the default rtol, and \">\" means that\n`cvode-bdf` only comes to a larger one. \"over the floor\": `auto` over "
       "one evaluation of the law for each row.\n\n";
   std::vector<MarkdownRow> rows{{"scene", "is"}};
   for (const double error : k_errors) rows.front().push_back(fmt::format("at {:.0e}", error));
@@ -178,8 +177,7 @@ void append_auto(const std::vector<BenchScene>& scenes, std::string& text) {
   if (std::isnan(largest)) return;
   text += fmt::format(
       "\n`auto` and the integrator that it chooses make the same runs. Their times differ by {:.1f} % in the median "
-      "and "
-      "by {:.1f} % at\nmost: so much of a ratio is noise.\n",
+      "and by {:.1f} % at\nmost: so much of a ratio is noise.\n",
       100.0 * middle, 100.0 * largest);
 }
 
@@ -229,8 +227,7 @@ void append_profiles(const std::vector<BenchProfile>& profiles, std::string& tex
   if (profiles.empty()) return;
   text +=
       "\n## Where the time goes\n\nShares of one history's time on the clock, of the fastest of twenty. What is left "
-      "is the integrator's own, event location "
-      "and recording less what\nthe system does for them.\n\n";
+      "is the integrator's own, event location and recording less what\nthe system does for them.\n\n";
   std::vector<MarkdownRow> rows{
       {"scene", "integrator", "history", "law", "linear algebra", "guards", "observables", "the rest", "law calls"}};
   for (const BenchProfile& profile : profiles) {
@@ -464,9 +461,8 @@ std::string bench_text(const std::vector<BenchScene>& scenes, const std::vector<
   std::string text = fmt::format(
       "# Run time against error\n\n{}\n\nTimes are the processor times of the fastest of repeated runs of one history, "
       "recording included, set-up of the\nscene not. Errors are the largest difference of any force, stress, "
-      "displacement, "
-      "strain, apparent radius or work at\nany output point over its largest value. \"Time at 1e-08\": of the fastest "
-      "run with no larger error.\n",
+      "displacement, strain, apparent radius or work at\nany output point over its largest value. \"Time at 1e-08\": "
+      "of the fastest run with no larger error.\n",
       machine_text());
   const bool has_auto = std::ranges::any_of(scenes, [](const BenchScene& scene) {
     return std::ranges::find(scene.points, integrators::k_auto, &BenchPoint::integrator) != scene.points.end();

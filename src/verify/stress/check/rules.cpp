@@ -43,7 +43,6 @@ constexpr std::size_t k_most_events_between_ends = 10;
 // 103 to 2,214, the worst 3,566.
 constexpr long k_most_work_direct = 1000;
 constexpr double k_most_work_integrated = 20000.0;
-// Resultant of unit normals below which a class of walls does not act on the centre.
 // Share of the rest of a force's ramp that check_hold() samples ahead, and of the largest force that is small beside
 // it.
 constexpr double k_little = 1e-3;
