@@ -72,22 +72,20 @@ std::vector<string_view> model_names() {
 
 std::vector<KeySpec> root_keys() {
   return {
-      {.name = "title", .meaning = "what the scenario is about", .kind = Kind::text, .example = "\"die compaction\""},
+      key_of(Kind::text, "title", "what the scenario is about", "\"die compaction\""),
       {.name = "model",
        .meaning = "contact law",
        .kind = Kind::choice,
        .is_required = true,
        .choices = model_names(),
        .example = "\"mdr\""},
-      {.name = "particle", .meaning = "the particle", .kind = Kind::table, .example = "[particle]"},
-      {.name = "material", .meaning = "parameters of the contact law", .kind = Kind::table, .example = "[material]"},
-      {.name = "loading", .meaning = "what the walls do", .kind = Kind::table, .example = "[loading]"},
-      {.name = "output", .meaning = "what is recorded", .kind = Kind::table, .example = "[output]"},
-      {.name = "numerics", .meaning = "how the equations are solved", .kind = Kind::table, .example = "[numerics]"},
-      {.name = "sensitivities",
-       .meaning = "numbers with respect to which the history is differentiated",
-       .kind = Kind::table,
-       .example = "[sensitivities]"},
+      key_of(Kind::table, "particle", "the particle", "[particle]"),
+      key_of(Kind::table, "material", "parameters of the contact law", "[material]"),
+      key_of(Kind::table, "loading", "what the walls do", "[loading]"),
+      key_of(Kind::table, "output", "what is recorded", "[output]"),
+      key_of(Kind::table, "numerics", "how the equations are solved", "[numerics]"),
+      key_of(Kind::table, "sensitivities", "numbers with respect to which the history is differentiated",
+             "[sensitivities]"),
   };
 }
 
@@ -118,11 +116,8 @@ std::vector<KeySpec> output_keys() {
 }
 
 std::vector<KeySpec> sensitivity_keys() {
-  return {{.name = "keys",
-           .meaning = "numbers of the scenario, by their paths",
-           .kind = Kind::texts,
-           .is_required = true,
-           .example = "[\"material.yield_stress\"]"}};
+  return {
+      required(key_of(Kind::texts, "keys", "numbers of the scenario, by their paths", "[\"material.yield_stress\"]"))};
 }
 
 std::vector<KeySpec> numerics_keys() {
@@ -150,11 +145,7 @@ std::vector<KeySpec> numerics_keys() {
 
 std::vector<KeySpec> wall_keys() {
   return {
-      {.name = "name",
-       .meaning = "unique name",
-       .kind = Kind::identifier,
-       .is_required = true,
-       .example = "\"bottom\""},
+      required(key_of(Kind::identifier, "name", "unique name", "\"bottom\"")),
       {.name = "normal",
        .meaning = "direction from the particle's centre to the wall",
        .kind = Kind::direction,
@@ -167,10 +158,7 @@ std::vector<KeySpec> wall_keys() {
        .range = k_not_negative,
        .default_value = 0.0},
       {.name = "fixed", .meaning = "the wall does not move", .kind = Kind::toggle, .default_value = false},
-      {.name = "steps",
-       .meaning = "program of this wall alone",
-       .kind = Kind::tables,
-       .example = "[[loading.wall.steps]]"},
+      key_of(Kind::tables, "steps", "program of this wall alone", "[[loading.wall.steps]]"),
   };
 }
 
@@ -217,11 +205,9 @@ std::vector<KeySpec> material_keys(const Model& model) {
     if (!model.presets.empty()) keys.back().is_required = false;
   }
   if (model.power_law_of != nullptr) {
-    keys.push_back(
-        {.name = "ludwik",
-         .meaning = "instead of strength and hardening_exponent: Ludwik's law, and the power law nearest to it",
-         .kind = Kind::table,
-         .example = "{ yield_stress = \"5 MPa\", strength = \"15.5 MPa\", exponent = 0.35 }"});
+    keys.push_back(key_of(Kind::table, "ludwik",
+                          "instead of strength and hardening_exponent: Ludwik's law, and the power law nearest to it",
+                          "{ yield_stress = \"5 MPa\", strength = \"15.5 MPa\", exponent = 0.35 }"));
   }
   return keys;
 }
@@ -251,17 +237,12 @@ std::vector<KeySpec> ludwik_keys() {
        .kind = Kind::quantity,
        .range = k_positive,
        .default_value = 1.0},
-      {.name = "fit",
-       .meaning = "what is fitted: both parameters, or the exponent with the strength Y + K",
-       .kind = Kind::choice,
-       .choices = words_of(k_ludwik_fits),
-       .default_value = k_ludwik_fits.front()},
+      first_by_default(
+          choice_key("fit", "what is fitted: both parameters, or the exponent with the strength Y + K", k_ludwik_fits)),
   };
 }
 
-KeySpec steps_key(string_view meaning) {
-  return {.name = "steps", .meaning = meaning, .kind = Kind::tables, .example = "[[loading.steps]]"};
-}
+KeySpec steps_key(string_view meaning) { return key_of(Kind::tables, "steps", meaning, "[[loading.steps]]"); }
 
 KeySpec configuration_key(const Model& model, string_view meaning) {
   return {.name = "configuration",
@@ -333,10 +314,8 @@ std::vector<KeySpec> until_keys(const Model& model) {
     return keys;
   }
   std::vector<KeySpec> keys{
-      {.name = "wall",
-       .meaning = "contact class or wall of the quantities beside it; without it that of the step",
-       .kind = Kind::text,
-       .example = "\"axial\""},
+      key_of(Kind::text, "wall", "contact class or wall of the quantities beside it; without it that of the step",
+             "\"axial\""),
       {.name = "force",
        .meaning = "force on the wall, compression positive",
        .kind = Kind::quantity,
@@ -435,21 +414,10 @@ CourseForm course_form(const KeySpec& target, string_view column) {
   };
   CourseForm form;
   form.table = {
-      {.name = "table",
-       .meaning = "table of values over time; the value between two rows is linear in time",
-       .kind = Kind::file,
-       .is_required = true,
-       .example = "\"file.csv\""},
-      {.name = "time",
-       .meaning = "column of times from the beginning of the step",
-       .kind = Kind::text,
-       .is_required = true,
-       .example = "\"t[s]\""},
-      {.name = "value",
-       .meaning = "column of values",
-       .kind = Kind::text,
-       .is_required = true,
-       .example = fmt::format("\"{}\"", column)},
+      required(key_of(Kind::file, "table", "table of values over time; the value between two rows is linear in time",
+                      "\"file.csv\"")),
+      required(key_of(Kind::text, "time", "column of times from the beginning of the step", "\"t[s]\"")),
+      required(key_of(Kind::text, "value", "column of values", fmt::format("\"{}\"", column))),
   };
   form.sine = {{.name = "sine",
                 .meaning = "a sine that begins at its mean",
@@ -503,11 +471,7 @@ std::vector<StepForm> step_forms(const Model& model) {
                 .is_required = true,
                 .range = {.lower = 1.0, .upper = k_most_steps},
                 .example = "5"};
-  KeySpec nested{.name = "steps",
-                 .meaning = "the steps that are repeated",
-                 .kind = Kind::tables,
-                 .is_required = true,
-                 .example = "[[loading.steps.steps]]"};
+  KeySpec nested = required(key_of(Kind::tables, "steps", "the steps that are repeated", "[[loading.steps.steps]]"));
   std::vector<StepForm> forms;
   for (const DriveKey& drive : model.drives) forms.push_back(drive_form(drive, model));
   if (model.has_walls()) {
@@ -557,10 +521,7 @@ void add_model_tables(Language& language, string_view model) {
     if (is_known && name != model) {
       language.foreign_tables.push_back({name, fmt::format("is the table of another model; this one is '{}'", model)});
     } else {
-      language.root.push_back({.name = name,
-                               .meaning = "options of this model alone",
-                               .kind = Kind::table,
-                               .example = fmt::format("[{}]", name)});
+      language.root.push_back(key_of(Kind::table, name, "options of this model alone", fmt::format("[{}]", name)));
     }
   }
 }

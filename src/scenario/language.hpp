@@ -58,6 +58,26 @@ struct KeySpec {
   std::vector<std::pair<std::string_view, std::string_view>> renamed{};
 };
 
+/// Key of a kind that needs neither range nor choices.
+/// @param example  as written in a file
+[[nodiscard]] inline KeySpec key_of(KeySpec::Kind kind, std::string_view name, std::string_view meaning,
+                                    std::string example) {
+  return {.name = name, .meaning = meaning, .kind = kind, .example = std::move(example)};
+}
+[[nodiscard]] inline KeySpec choice_key(std::string_view name, std::string_view meaning,
+                                        std::span<const std::string_view> choices) {
+  return {.name = name, .meaning = meaning, .kind = KeySpec::Kind::choice, .choices = {choices.begin(), choices.end()}};
+}
+/// Makes the first choice the one of files that name none.
+[[nodiscard]] inline KeySpec first_by_default(KeySpec key) {
+  key.default_value = key.choices.front();
+  return key;
+}
+[[nodiscard]] inline KeySpec required(KeySpec key) {
+  key.is_required = true;
+  return key;
+}
+
 /// A key of the language that does not belong where it was found, with the reason.
 struct ForeignKey {
   std::string_view name;

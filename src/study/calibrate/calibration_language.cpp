@@ -9,18 +9,8 @@ namespace {
 
 using Kind = KeySpec::Kind;
 
-template <std::size_t N>
-KeySpec choice_key(std::string_view name, std::string_view meaning, const std::array<std::string_view, N>& choices) {
-  return {.name = name, .meaning = meaning, .kind = Kind::choice, .choices = {choices.begin(), choices.end()}};
-}
-
-KeySpec text_key(std::string_view name, std::string_view meaning, std::string example) {
-  return {.name = name, .meaning = meaning, .kind = Kind::text, .is_required = true, .example = std::move(example)};
-}
-
 KeySpec column_key(std::string_view name, std::string_view meaning, Kind kind, const char* example) {
-  KeySpec key = text_key(name, meaning, example);
-  key.kind = kind;
+  KeySpec key = required(key_of(kind, name, meaning, example));
   key.range = {.lower = 1.0, .upper = 1e6};
   if (kind == Kind::table) key.example = "{ column = \"h\", quantity = \"displacement\", unit = \"mm\" }";
   return key;
@@ -43,58 +33,41 @@ KeySpec bound_key(std::string_view name, std::string_view meaning, const NumberK
 
 Keys root_keys(bool scenario_is_table, bool data_is_list) {
   return {
-      {.name = "title", .meaning = "what is calibrated", .kind = Kind::text, .example = "\"MCC PH-200\""},
-      {.name = "scenario",
-       .meaning = "the scenario: its file, or the scenario itself",
-       .kind = scenario_is_table ? Kind::table : Kind::file,
-       .is_required = true,
-       .example = scenario_is_table ? "[scenario]" : "\"uniaxial.toml\""},
-      {.name = "data",
-       .meaning = "what was measured: one curve, or several that are fitted together",
-       .kind = data_is_list ? Kind::tables : Kind::table,
-       .is_required = true,
-       .example = data_is_list ? "[[data]]" : "[data]"},
+      key_of(Kind::text, "title", "what is calibrated", "\"MCC PH-200\""),
+      required(key_of(scenario_is_table ? Kind::table : Kind::file, "scenario",
+                      "the scenario: its file, or the scenario itself",
+                      scenario_is_table ? "[scenario]" : "\"uniaxial.toml\"")),
+      required(key_of(data_is_list ? Kind::tables : Kind::table, "data",
+                      "what was measured: one curve, or several that are fitted together",
+                      data_is_list ? "[[data]]" : "[data]")),
       {.name = "free",
        .meaning = "which numbers of the scenario are sought, and between which bounds",
        .kind = Kind::table,
        .is_required = true,
        .may_be_empty = false,
        .example = "[free]"},
-      {.name = "prior",
-       .meaning = "what is known of sought numbers before the data are",
-       .kind = Kind::table,
-       .example = "[prior]"},
-      {.name = "fit", .meaning = "how the fit is made", .kind = Kind::table, .example = "[fit]"},
+      key_of(Kind::table, "prior", "what is known of sought numbers before the data are", "[prior]"),
+      key_of(Kind::table, "fit", "how the fit is made", "[fit]"),
   };
 }
 
 Keys data_keys(const DataKinds& kinds) {
-  KeySpec weights = choice_key(
+  KeySpec weights = first_by_default(choice_key(
       "weights",
       "of the residuals: one over the largest |y|, one over each |y|, factors in a column, or such that the sum of "
       "their squares is an integral over the path of x",
-      k_weights);
-  weights.default_value = "absolute";
+      k_weights));
   KeySpec weight_column = column_key(
       "weight_column", "column with the factors of the residuals, for example one over the standard deviations",
       kinds.weight_column, "\"weight[-]\"");
   weight_column.is_required = false;
-  KeySpec separator = text_key("separator", "what stands between cells [found]", "\"semicolon\"");
-  separator.is_required = false;
   KeySpec units =
       choice_key("units", "whether a row of units stands below the headings [found], or a list of units", k_unit_rows);
   units.kind = kinds.units;
   if (units.kind == Kind::texts) units.example = "[\"s\", \"mm\", \"kN\"]";
   return {
-      {.name = "file",
-       .meaning = "table with a row of headings",
-       .kind = Kind::file,
-       .is_required = true,
-       .example = "\"measured.csv\""},
-      {.name = "set",
-       .meaning = "overrides of the scenario for this curve",
-       .kind = Kind::texts,
-       .example = "[\"material.yield_stress=20 MPa\"]"},
+      required(key_of(Kind::file, "file", "table with a row of headings", "\"measured.csv\"")),
+      key_of(Kind::texts, "set", "overrides of the scenario for this curve", "[\"material.yield_stress=20 MPa\"]"),
       column_key("x", "column that drives the scenario: displacement or force, or what its steps prescribe", kinds.x,
                  "\"displacement[m]\""),
       column_key("y", "column that is fitted", kinds.y, "\"force[N]\""),
@@ -105,7 +78,7 @@ Keys data_keys(const DataKinds& kinds) {
        .kind = Kind::table,
        .may_be_empty = false,
        .example = "{ absolute = \"2 N\", relative = 0.01 }"},
-      separator,
+      key_of(Kind::text, "separator", "what stands between cells [found]", "\"semicolon\""),
       choice_key("decimal", "decimal sign [found]", k_decimals),
       {.name = "skip",
        .meaning = "lines above the headings [found]",
@@ -128,24 +101,19 @@ Keys data_keys(const DataKinds& kinds) {
 }
 
 Keys column_keys(Kind column) {
-  KeySpec unit = text_key("unit", "its unit [that of the file]", "\"R0\"");
-  unit.is_required = false;
   return {
       column_key("column", "heading of the column, or its number", column, "\"gamma_over_2R[-]\""),
-      text_key("quantity", "what it holds", "\"displacement\""),
-      unit,
+      required(key_of(Kind::text, "quantity", "what it holds", "\"displacement\"")),
+      key_of(Kind::text, "unit", "its unit [that of the file]", "\"R0\""),
   };
 }
 
 Keys deflection_keys() {
   return {
-      {.name = "table",
-       .meaning = "file with the machine's displacement under forces, ascending",
-       .kind = Kind::file,
-       .is_required = true,
-       .example = "\"frame.csv\""},
-      text_key("force", "its column of forces", "\"force[N]\""),
-      text_key("displacement", "its column of displacements", "\"displacement[um]\""),
+      required(
+          key_of(Kind::file, "table", "file with the machine's displacement under forces, ascending", "\"frame.csv\"")),
+      required(key_of(Kind::text, "force", "its column of forces", "\"force[N]\"")),
+      required(key_of(Kind::text, "displacement", "its column of displacements", "\"displacement[um]\"")),
   };
 }
 
@@ -158,8 +126,7 @@ std::vector<NumberKey> machine_keys() {
 Keys free_keys(const std::vector<NumberKey>& numbers) {
   Keys keys;
   for (const NumberKey& number : numbers) {
-    keys.push_back(
-        {.name = number.path, .meaning = number.meaning, .kind = Kind::table, .example = "{ from = ..., to = ... }"});
+    keys.push_back(key_of(Kind::table, number.path, number.meaning, "{ from = ..., to = ... }"));
   }
   return keys;
 }
@@ -183,25 +150,16 @@ std::optional<Dimension> dimension_of(std::string_view si) {
 Keys prior_keys(const std::vector<std::string>& paths) {
   Keys keys;
   for (const std::string& path : paths) {
-    keys.push_back({.name = path,
-                    .meaning = "what is known of it",
-                    .kind = Kind::table,
-                    .example = "{ normal = [\"1.2 GPa\", \"0.1 GPa\"] }"});
+    keys.push_back(key_of(Kind::table, path, "what is known of it", "{ normal = [\"1.2 GPa\", \"0.1 GPa\"] }"));
   }
   return keys;
 }
 
 Keys distribution_keys() {
   return {
-      {.name = "normal",
-       .meaning = "mean and standard deviation",
-       .kind = Kind::texts,
-       .example = "[\"1.2 GPa\", \"0.1 GPa\"]"},
-      {.name = "lognormal",
-       .meaning = "median, and standard deviation of the natural logarithm",
-       .kind = Kind::texts,
-       .example = "[\"1.2 GPa\", 0.1]"},
-      {.name = "uniform", .meaning = "tighter bounds", .kind = Kind::texts, .example = "[\"1 GPa\", \"1.5 GPa\"]"},
+      key_of(Kind::texts, "normal", "mean and standard deviation", "[\"1.2 GPa\", \"0.1 GPa\"]"),
+      key_of(Kind::texts, "lognormal", "median, and standard deviation of the natural logarithm", "[\"1.2 GPa\", 0.1]"),
+      key_of(Kind::texts, "uniform", "tighter bounds", "[\"1 GPa\", \"1.5 GPa\"]"),
   };
 }
 
@@ -225,14 +183,8 @@ Keys noise_keys(Dimension dimension, Kind column) {
 }
 
 Keys fit_keys() {
-  KeySpec loss = choice_key("loss", "how much large residuals count", k_losses);
-  loss.default_value = k_losses.front();
-  KeySpec intervals = choice_key(
-      "intervals", "how intervals are found; auto: by the covariance, or the profile where that is not to be trusted",
-      k_intervals);
-  intervals.default_value = k_intervals.front();
   return {
-      loss,
+      first_by_default(choice_key("loss", "how much large residuals count", k_losses)),
       {.name = "loss_scale",
        .meaning = "weighted residual from which on it counts less than its square",
        .kind = Kind::quantity,
@@ -243,7 +195,10 @@ Keys fit_keys() {
        .kind = Kind::quantity,
        .range = {.lower = 0.0, .upper = 1.0, .lower_is_open = true, .upper_is_open = true},
        .default_value = 0.95},
-      intervals,
+      first_by_default(
+          choice_key("intervals",
+                     "how intervals are found; auto: by the covariance, or the profile where that is not to be trusted",
+                     k_intervals)),
   };
 }
 

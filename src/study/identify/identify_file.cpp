@@ -35,13 +35,8 @@ Keys plan_keys(bool scenario_is_table) {
   for (KeySpec& key : calibration::root_keys(scenario_is_table, false)) {
     if (key.name == "scenario" || key.name == "free" || key.name == "prior") keys.push_back(std::move(key));
   }
-  keys.push_back(
-      {.name = "title", .meaning = "what is planned", .kind = Kind::text, .example = "\"granules, batch 12\""});
-  keys.push_back({.name = "program",
-                  .meaning = "programs of loads that could be measured",
-                  .kind = Kind::tables,
-                  .is_required = true,
-                  .example = "[[program]]"});
+  keys.push_back(key_of(Kind::text, "title", "what is planned", "\"granules, batch 12\""));
+  keys.push_back(required(key_of(Kind::tables, "program", "programs of loads that could be measured", "[[program]]")));
   return keys;
 }
 
@@ -51,15 +46,9 @@ std::vector<ForeignKey> keys_of_calibrations() {
 
 Keys program_keys() {
   return {
-      {.name = "name",
-       .meaning = "of the program, in tables and figures",
-       .kind = Kind::identifier,
-       .is_required = true,
-       .example = "\"unloading\""},
-      {.name = "set",
-       .meaning = "overrides of the scenario for this program",
-       .kind = Kind::texts,
-       .example = "[\"loading.steps[0].displacement=0.2 R0\"]"},
+      required(key_of(Kind::identifier, "name", "of the program, in tables and figures", "\"unloading\"")),
+      key_of(Kind::texts, "set", "overrides of the scenario for this program",
+             "[\"loading.steps[0].displacement=0.2 R0\"]"),
       {.name = "y",
        .meaning = "what is measured: a number of the history",
        .kind = Kind::text,

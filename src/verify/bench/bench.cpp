@@ -313,10 +313,7 @@ struct BenchKeys {
                    .meaning = "scenario file, of a scene also a folder of them, sought from this file's folder",
                    .is_required = true,
                    .example = "\"../die.toml\""};
-  KeySpec set{.name = "set",
-              .meaning = "overrides of the scenario",
-              .kind = Kind::texts,
-              .example = "[\"material.yield_stress=20 MPa\"]"};
+  KeySpec set = key_of(Kind::texts, "set", "overrides of the scenario", "[\"material.yield_stress=20 MPa\"]");
   std::vector<KeySpec> root{
       {.name = "scene", .meaning = "scenes to measure", .kind = Kind::tables, .is_required = true},
       {.name = "saving", .meaning = "scenes that are spared something", .kind = Kind::tables}};
@@ -330,11 +327,8 @@ struct BenchKeys {
       {.name = "name", .meaning = "name of both scenes", .is_required = true, .example = "\"simple\""},
       scenario,
       set,
-      {.name = "without",
-       .meaning = "the scene that computes it",
-       .kind = Kind::table,
-       .is_required = true,
-       .example = "without = { scenario = \"../die.toml\" }"}};
+      required(
+          key_of(Kind::table, "without", "the scene that computes it", "without = { scenario = \"../die.toml\" }"))};
   std::vector<KeySpec> without{scenario, set};
 };
 
