@@ -20,9 +20,9 @@ constexpr double k_degree = std::numbers::pi / 180.0;
 constexpr double k_least_wall_angle = 40.0 * k_degree;
 
 constexpr std::array k_material{
-    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},
+    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive},
     QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, {.lower = 0.0, .upper = 0.49}, {}},
-    QuantityKey{"yield_stress", "uniaxial yield stress", Dimension::stress, k_positive, {}},
+    QuantityKey{"yield_stress", "uniaxial yield stress", Dimension::stress, k_positive},
 };
 
 constexpr std::array k_regimes{

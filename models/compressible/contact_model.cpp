@@ -20,7 +20,7 @@ constexpr Range k_from_one{.lower = 1.0};
 constexpr Range k_depth{.lower = 0.0, .upper = k_largest_displacement, .lower_is_open = true};
 
 constexpr std::array k_material{
-    QuantityKey{"stiffness_ratio", "Young's modulus over yield pressure, E0/sigma_y0", Dimension::none, k_positive, {}},
+    QuantityKey{"stiffness_ratio", "Young's modulus over yield pressure, E0/sigma_y0", Dimension::none, k_positive},
     QuantityKey{"shear_ratio",
                 "shear strength over yield pressure, Gamma0/sigma_y0; for the regressions and unloading_table only",
                 Dimension::none,
@@ -33,19 +33,16 @@ constexpr std::array k_material{
                 k_positive,
                 {},
                 true},
-    QuantityKey{"nu0", "Poisson's ratio at the reference density", Dimension::none, k_poisson_to_half, {}},
-    QuantityKey{"yield_pressure",
-                "hydrostatic yield pressure sigma_y0 at the reference density",
-                Dimension::stress,
-                k_positive,
-                {}},
+    QuantityKey{"nu0", "Poisson's ratio at the reference density", Dimension::none, k_poisson_to_half},
+    QuantityKey{"yield_pressure", "hydrostatic yield pressure sigma_y0 at the reference density", Dimension::stress,
+                k_positive},
 };
 
 constexpr std::array k_columns{
-    QuantityKey{"stiffness_over_shear", "E0/Gamma0", Dimension::none, k_positive, {}},
-    QuantityKey{"delta_max_over_R0", "largest displacement", Dimension::none, k_depth, {}},
-    QuantityKey{"alpha", "exponent of unloading", Dimension::none, k_from_one, {}},
-    QuantityKey{"beta", "secant stiffness over that of Hertz", Dimension::none, k_positive, {}},
+    QuantityKey{"stiffness_over_shear", "E0/Gamma0", Dimension::none, k_positive},
+    QuantityKey{"delta_max_over_R0", "largest displacement", Dimension::none, k_depth},
+    QuantityKey{"alpha", "exponent of unloading", Dimension::none, k_from_one},
+    QuantityKey{"beta", "secant stiffness over that of Hertz", Dimension::none, k_positive},
 };
 
 std::string example_unloading_table() {
@@ -74,7 +71,6 @@ constexpr std::array k_options{
               .meaning = "alpha and beta over E0/Gamma0 and the largest displacement: columns stiffness_over_shear, "
                          "delta_max_over_R0, alpha, beta",
               .kind = OptionKey::Kind::file,
-              .choices = {},
               .columns = k_columns,
               .example = example_unloading_table},
 };

@@ -39,8 +39,8 @@ constexpr QuantityKey number(string_view name, string_view meaning, std::optiona
 constexpr std::array k_point_material{
     QuantityKey{
         "yield_pressure", "hydrostatic yield pressure at the reference density", Dimension::stress, k_positive, {}},
-    QuantityKey{"stiffness_ratio", "Young's modulus over the yield pressure", Dimension::none, k_positive, {}},
-    QuantityKey{"shear_ratio", "greatest shear strength over the yield pressure", Dimension::none, k_positive, {}},
+    QuantityKey{"stiffness_ratio", "Young's modulus over the yield pressure", Dimension::none, k_positive},
+    QuantityKey{"shear_ratio", "greatest shear strength over the yield pressure", Dimension::none, k_positive},
     QuantityKey{"tensile_ratio",
                 "hydrostatic tensile strength over the yield pressure (vmdc, dpc)",
                 Dimension::none,

@@ -19,7 +19,7 @@ namespace {
 using std::string_view;
 
 constexpr std::array k_material{
-    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},
+    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive},
     QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, {.lower = 0.0, .upper = 0.5}, {}},
 };
 

@@ -18,8 +18,8 @@ using std::string_view;
 constexpr std::array k_references{&references::k_hertz1882, &references::k_zunker2024};
 
 constexpr std::array k_material{
-    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},
-    QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half, {}},
+    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive},
+    QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half},
 };
 
 constexpr std::array k_regimes{

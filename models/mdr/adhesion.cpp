@@ -230,8 +230,7 @@ Frame elastic_frame(ElasticProfile profile, double radius, double overlap) noexc
   return {.indenter = elastic_indenter(profile, radius),
           .displacement = overlap,
           .by_overlap = 1.0,
-          .by_radius = {0.0, 1.0 / radius, 1.0 / radius},
-          .by_overlap_max = {}};
+          .by_radius = {0.0, 1.0 / radius, 1.0 / radius}};
 }
 
 Frame unloading_frame(const UnloadingShape& shape, double overlap) noexcept {

@@ -74,7 +74,7 @@ struct Frame {
   double displacement = 0.0;  ///< delta_1D
   double by_overlap = 1.0;    ///< d(delta_1D)/d(delta) = 1/(1 - rho)
   Change by_radius;           ///< at fixed overlap and largest overlap
-  Change by_overlap_max;      ///< at fixed overlap and radius
+  Change by_overlap_max{};    ///< at fixed overlap and radius
 };
 /// One-dimensional space of an elastic contact.
 [[nodiscard]] Frame elastic_frame(ElasticProfile profile, double radius, double overlap) noexcept;

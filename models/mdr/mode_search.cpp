@@ -406,7 +406,7 @@ void ModeSearch::balance_anew(double xi, std::span<double> y, std::vector<Event>
     return;
   }
   p_.evaluate(xi, y);
-  spring_ = {.branches = p_.branches(), .overlaps = {}, .logged = log.size(), .made = made_.size()};
+  spring_ = {.branches = p_.branches(), .logged = log.size(), .made = made_.size()};
   for (std::size_t i = 0; i < p_.size(); ++i) spring_.overlaps.push_back(p_.contact(i).overlap);
   for (std::size_t round = 0; round < most_rounds(); ++round) {
     const std::vector<double> trial(y.begin(), y.end());

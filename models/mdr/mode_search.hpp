@@ -59,7 +59,7 @@ class ModeSearch {
   /// State from which a free centre springs to another equilibrium.
   struct Spring {
     std::vector<ContactBranch> branches;
-    std::vector<double> overlaps;
+    std::vector<double> overlaps{};
     std::size_t logged = 0;
     std::size_t made = 0;
   };

@@ -17,9 +17,9 @@ namespace {
 using std::string_view;
 
 constexpr std::array k_material{
-    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},
-    QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half, {}},
-    QuantityKey{"yield_stress", "uniaxial yield stress", Dimension::stress, k_positive, {}},
+    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive},
+    QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half},
+    QuantityKey{"yield_stress", "uniaxial yield stress", Dimension::stress, k_positive},
     QuantityKey{"surface_energy", "effective surface energy of the particle-wall contact", Dimension::surface_energy,
                 k_not_negative, 0.0},
 };
@@ -45,11 +45,10 @@ constexpr std::array k_options{
               OptionKey::Kind::choice, k_elastic_profiles},
     OptionKey{"delta_max_rule", "whether the largest overlap of an unloaded contact moves with the apparent radius",
               OptionKey::Kind::choice, k_delta_max_rules},
-    OptionKey{"strict", "stop where the contact caps intersect instead of warning", OptionKey::Kind::toggle, {}},
+    OptionKey{"strict", "stop where the contact caps intersect instead of warning", OptionKey::Kind::toggle},
     OptionKey{.name = "pressure_table",
               .meaning = "own curve of p_Y/Y over delta_max/R instead of 1 + 1.75 exp(-4.4 x): CSV, from 0 on",
               .kind = OptionKey::Kind::file,
-              .choices = {},
               .example = example_pressure_table},
 };
 

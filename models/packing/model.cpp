@@ -42,12 +42,7 @@ constexpr std::array k_material{
 };
 
 constexpr OptionKey number(string_view name, string_view meaning, const Range& range, std::optional<double> value) {
-  return {.name = name,
-          .meaning = meaning,
-          .kind = OptionKey::Kind::quantity,
-          .choices = {},
-          .range = range,
-          .default_value = value};
+  return {.name = name, .meaning = meaning, .kind = OptionKey::Kind::quantity, .range = range, .default_value = value};
 }
 
 constexpr std::array k_options{
@@ -73,8 +68,7 @@ constexpr std::array k_options{
     OptionKey{.name = "continuous_jamming",
               .meaning = "put critical_porosity = 1 - jamming_fraction and c2 = -ln jamming_fraction, so that the "
                          "stress begins at zero",
-              .kind = OptionKey::Kind::toggle,
-              .choices = {}},
+              .kind = OptionKey::Kind::toggle},
     number("initial_packing_fraction", "packing fraction at the start; absent: where the packing jams", k_inside_one,
            {}),
 };

@@ -41,9 +41,9 @@ constexpr OptionKey k_unloading{
 // --- keys
 
 constexpr std::array k_elastic_plastic_material{
-    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive, {}},
-    QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half, {}},
-    QuantityKey{"yield_stress", "uniaxial yield stress", Dimension::stress, k_positive, {}},
+    QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive},
+    QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half},
+    QuantityKey{"yield_stress", "uniaxial yield stress", Dimension::stress, k_positive},
 };
 
 constexpr std::array k_power_law_material{
@@ -65,10 +65,8 @@ constexpr std::array k_power_law_material{
 };
 
 constexpr std::array k_similarity_options{
-    OptionKey{"curvature_correction",
-              "contact radius with the next term of the spheres' curvature",
-              OptionKey::Kind::toggle,
-              {}},
+    OptionKey{"curvature_correction", "contact radius with the next term of the spheres' curvature",
+              OptionKey::Kind::toggle},
     k_unloading,
 };
 

@@ -107,11 +107,6 @@ const Citation k_biwa1995{.key = "biwa1995",
 const Citation k_edmans{.key = "edmans",
                         .authors = "B. D. Edmans and I. C. Sinka",
                         .title = "Numerical derivation of a normal contact law for compressible plastic particles",
-                        .venue = {},
-                        .volume = {},
-                        .pages = {},
-                        .year = {},
-                        .doi = {},
                         .kind = Citation::Kind::manuscript};
 
 const Citation k_hertz1882{.key = "hertz1882",
@@ -126,11 +121,7 @@ const Citation k_hertz1882{.key = "hertz1882",
 const Citation k_monograin{.key = "monograin",
                            .authors = "The monograin developers",
                            .title = "monograin, a workbench for the mechanics of a single particle under contact",
-                           .venue = {},
-                           .volume = {},
-                           .pages = {},
                            .year = "2026",
-                           .doi = {},
                            .kind = Citation::Kind::manuscript};
 
 const Citation k_nezamabadi2022{.key = "nezamabadi2022",
@@ -148,10 +139,7 @@ const Citation k_shahin2021{.key = "shahin2021",
                                 "Contact laws for large deformation unconfined and confined compression of "
                                 "spherical plastic particles with power-law hardening",
                             .venue = "Purdue University",
-                            .volume = {},
-                            .pages = {},
                             .year = "2021",
-                            .doi = {},
                             .kind = Citation::Kind::thesis};
 
 const Citation k_storakers1997{.key = "storakers1997",

@@ -12,11 +12,11 @@ struct Citation {
   std::string_view key;      ///< key of the BibTeX entry
   std::string_view authors;  ///< initials and family name of each author, with " and " between authors
   std::string_view title;
-  std::string_view venue;   ///< journal, or the university of a thesis
-  std::string_view volume;  ///< volume, with the issue in brackets
-  std::string_view pages;   ///< page range, or the article number
-  std::string_view year;
-  std::string_view doi;
+  std::string_view venue{};   ///< journal, or the university of a thesis
+  std::string_view volume{};  ///< volume, with the issue in brackets
+  std::string_view pages{};   ///< page range, or the article number
+  std::string_view year{};
+  std::string_view doi{};
   Kind kind = Kind::article;
 };
 

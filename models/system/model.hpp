@@ -82,11 +82,11 @@ struct OptionKey {
   std::string_view name;
   std::string_view meaning;
   Kind kind = Kind::choice;
-  std::span<const std::string_view> choices;  ///< words of a choice; the first one is the default
-  bool default_toggle = false;                ///< default of a toggle
-  Dimension dimension = Dimension::none;      ///< dimension of a quantity
-  Range range{};                              ///< admissible values of a quantity
-  std::optional<double> default_value{};      ///< default of a quantity; none: the quantity may be absent
+  std::span<const std::string_view> choices{};  ///< words of a choice; the first one is the default
+  bool default_toggle = false;                  ///< default of a toggle
+  Dimension dimension = Dimension::none;        ///< dimension of a quantity
+  Range range{};                                ///< admissible values of a quantity
+  std::optional<double> default_value{};        ///< default of a quantity; none: the quantity may be absent
   /// Columns of a file with a table of values over x and y; empty for a curve of two columns. No two rows of the table
   /// have the same x and y.
   std::span<const QuantityKey> columns{};
@@ -139,8 +139,8 @@ struct PlannedStep {
 /// Samples from a file that an option names: a curve y(x), or a table of values over x and y.
 struct SampledCurve {
   std::string text;  ///< the file as it was read
-  std::vector<double> x;
-  std::vector<double> y;
+  std::vector<double> x{};
+  std::vector<double> y{};
   std::vector<std::vector<double>> values{};  ///< further columns of a table, in the order of OptionKey::columns
 };
 
@@ -254,13 +254,13 @@ struct Violation;
 
 /// A model: its description for users, and its functions for the workbench.
 struct Model {
-  std::string_view name;
-  std::string_view summary;
+  std::string_view name{};
+  std::string_view summary{};
   /// Publications of the law, the main one first.
   std::span<const Citation* const> references{};
   /// Equations of the references that give the law, and the misprints that are corrected.
   std::string_view source{};
-  std::span<const QuantityKey> material;
+  std::span<const QuantityKey> material{};
   std::span<const OptionKey> options{};
   std::span<const std::string_view> configurations{};  ///< wall sets that a scenario may name; empty: no choice
   bool has_free_centre = false;                        ///< true if `[loading] centre = "equilibrium"` is allowed
@@ -268,7 +268,7 @@ struct Model {
   bool has_profile = false;      ///< true if HybridSystem::surface() gives pressure and surface under a contact
   std::span<const Term> regimes{};
   std::span<const Term> events{};
-  std::span<const std::string_view> domain;       ///< limits of validity, a sentence each
+  std::span<const std::string_view> domain{};     ///< limits of validity, a sentence each
   double least_wall_angle = 0.0;                  ///< smallest admissible angle between the normals of two walls [rad]
   std::span<const OptionKey> material_options{};  ///< options in the table `[material]`
   /// Materials that the key `preset` in `[material]` may name. Keys given beside `preset` override its values.

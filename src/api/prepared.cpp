@@ -90,8 +90,7 @@ void check_names(const Expression& formula, std::string_view text, const ColumnN
     const bool is_derivative = found >= columns.units.size() && found < known.size();
     if (is_derivative || (found < known.size() && unit == columns.units[found])) continue;
     if (found < known.size()) {
-      const std::string heading =
-          Column{.name = columns.numbers[found], .unit = columns.units[found], .labels = {}}.heading();
+      const std::string heading = Column{.name = columns.numbers[found], .unit = columns.units[found]}.heading();
       throw std::invalid_argument(
           fmt::format("'{}': there is no '{}'; expected {}, or the name without a unit", text, shown(name), heading));
     }

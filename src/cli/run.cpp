@@ -30,15 +30,15 @@ struct RunOptions {
 
 struct Job {
   CheckedScenario scenario;
-  fs::path folder;
-  std::unique_ptr<StagedFolder> staged;
+  fs::path folder{};
+  std::unique_ptr<StagedFolder> staged{};
   double parse_time = 0.0;
 };
 
 template <class Read>
 Job make_job(Read&& read) {
   const auto start = std::chrono::steady_clock::now();
-  Job job{.scenario = read(), .folder = {}, .staged = {}, .parse_time = 0.0};
+  Job job{.scenario = read(), .parse_time = 0.0};
   job.parse_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return job;
 }

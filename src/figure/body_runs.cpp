@@ -117,7 +117,6 @@ std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
       // A single run needs no name; its figure is drawn while the folder does not have its final name yet.
       chart.panels[panel].series.push_back({.legend = runs.size() > 1 ? verbatim_text(folder.filename().string()) : "",
                                             .style = ChartSeries::Style::phases,
-                                            .colour = {},
                                             .x = values_of(history, history, figure->x, sign),
                                             .y = values_of(history, history, figure->panels[panel], sign)});
       append_events(marks, history, *figure, sign, panel, events[panel]);

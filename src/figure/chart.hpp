@@ -24,11 +24,11 @@ struct ChartSeries {
     events,  ///< points with the symbol of the event that the legend names, which stands there as in the file
   };
 
-  std::string legend;  ///< gnuplot's enhanced text; series with the same text share a line of the legend; empty: none
+  std::string legend{};  ///< gnuplot's enhanced text; series with the same text share a line of the legend; empty: none
   Style style = Style::phases;
-  std::optional<std::size_t> colour;  ///< number of a colour, from 0; absent: the next one that no other legend has
-  std::vector<double> x;
-  std::vector<double> y;
+  std::optional<std::size_t> colour{};  ///< number of a colour, from 0; absent: the next one that no other legend has
+  std::vector<double> x{};
+  std::vector<double> y{};
   /// y is an error, which may be zero. On a logarithmic ordinate, values at or below the lower end of the axis are
   /// drawn at that end, with marks.
   bool is_error = false;
@@ -40,7 +40,7 @@ struct ChartArea {
 
   std::string legend;
   unsigned colour = 0;  ///< 0xRRGGBB
-  std::vector<Box> boxes;
+  std::vector<Box> boxes{};
 };
 
 /// The area between two curves over the same x, drawn below the series. Rows in which anything is undefined are gaps.
@@ -79,7 +79,7 @@ struct ChartPanel {
 };
 
 struct Chart {
-  std::vector<ChartPanel> panels;         ///< at least one; arranged two by two
+  std::vector<ChartPanel> panels{};       ///< at least one; arranged two by two
   std::string area_heading = "Area";      ///< heading of areas and ranges in the legend; bands have their own
   std::vector<std::string> head{};        ///< lines of text above the panels, in a monospaced font
   std::vector<std::string> foot{};        ///< lines below the legend; with any text the page is as tall as an A4 page

@@ -147,9 +147,7 @@ void add_event(std::vector<ChartSeries>& series, std::string_view event, double 
   if (is_of_program(event)) return;
   auto found = std::ranges::find(series, event, &ChartSeries::legend);
   if (found == series.end()) {
-    found = series.insert(
-        series.end(),
-        {.legend = std::string(event), .style = ChartSeries::Style::events, .colour = {}, .x = {}, .y = {}});
+    found = series.insert(series.end(), {.legend = std::string(event), .style = ChartSeries::Style::events});
   }
   found->x.push_back(x);
   found->y.push_back(y);
@@ -198,7 +196,6 @@ ColumnChart column_chart(const std::vector<fs::path>& paths, const ColumnChoice&
       figure.chart.panels[k].series.push_back(
           {.legend = paths.size() > 1 ? short_text(folder.filename().string(), k_longest_name) : std::string(),
            .style = is_sweep(path) ? ChartSeries::Style::points : ChartSeries::Style::phases,
-           .colour = {},
            .x = values_of(table, x, x_axis),
            .y = values_of(table, y, y_axis)});
       add_events(figure.chart.panels[k], events, pairs[k], x_axis, y_axis);
@@ -226,7 +223,6 @@ void add_points(ColumnChart& figure, const MeasuredPoints& points) {
   };
   const ChartSeries series{.legend = points.legend,
                            .style = ChartSeries::Style::points,
-                           .colour = {},
                            .x = in_axis(points.x, figure.x),
                            .y = in_axis(points.y, figure.y)};
   for (ChartPanel& panel : figure.chart.panels) panel.series.push_back(series);

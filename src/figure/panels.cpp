@@ -106,7 +106,6 @@ Layout arrange(std::size_t panel_count, std::size_t lines_in_strip, std::optiona
 
   Layout layout{.width = k_figure_width_cm,
                 .height = static_cast<double>(rows) * k_cell_height_cm + strip,
-                .panels = {},
                 .legend = {k_legend_margin_cm, 0.0, k_legend_strip_cm, strip - k_legend_margin_cm}};
   if (is_in_cell) {
     layout.legend = {cell_width + k_legend_margin_cm, strip, k_legend_cell_cm, k_cell_height_cm - k_top_cm};

@@ -42,7 +42,7 @@ struct Panel {
 /// Panels two by two, in centimetres; the legend takes the free cell beside a third panel, else a strip below all.
 struct Layout {
   double width, height;
-  std::vector<Panel> panels;
+  std::vector<Panel> panels{};
   Box legend;
 };
 

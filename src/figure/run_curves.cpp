@@ -71,7 +71,7 @@ class StateReader {
 
 [[nodiscard]] ContactCurve contact_curve(const Table& history, const std::string& driven, const std::string& contact) {
   const StateReader reader(history, driven, contact);
-  ContactCurve curve{.name = contact, .states = {}};
+  ContactCurve curve{.name = contact};
   curve.states.reserve(history.row_count());
   for (std::size_t row = 0; row < history.row_count(); ++row) curve.states.push_back(reader.at(row));
   curve.is_ever_made = std::ranges::any_of(curve.states, [](const ContactState& state) {
@@ -293,8 +293,6 @@ RunCurves read_run(const fs::path& run) {
                    .radius = header_scale(history, "R0"),
                    .youngs_modulus = header_scale(history, "E"),
                    .yield_stress = header_scale(history, "Y"),
-                   .contacts = {},
-                   .phases = {},
                    .events = read_events(folder / "events.csv", driven)};
   for (const std::string& name : classes) curves.contacts.push_back(contact_curve(history, driven, name));
   if (std::ranges::none_of(k_quantities, [&](Quantity quantity) { return curves.has(quantity); })) {

@@ -49,9 +49,9 @@ struct ContactState {
 };
 
 struct ContactCurve {
-  std::string name;                  ///< contact class
-  std::vector<ContactState> states;  ///< one for each row of the history
-  bool is_ever_made = false;         ///< the contact bears a force at some time
+  std::string name;                    ///< contact class
+  std::vector<ContactState> states{};  ///< one for each row of the history
+  bool is_ever_made = false;           ///< the contact bears a force at some time
 
   /// True if the contact has any value of the quantity.
   [[nodiscard]] bool has(Quantity quantity) const;
@@ -70,8 +70,8 @@ struct RunCurves {
   std::optional<double> radius;          ///< R0 [m]
   std::optional<double> youngs_modulus;  ///< E [Pa]
   std::optional<double> yield_stress;    ///< Y [Pa]
-  std::vector<ContactCurve> contacts;    ///< in the order of the history's columns; at least one
-  std::vector<Phase> phases;             ///< of the path that ends at each row
+  std::vector<ContactCurve> contacts{};  ///< in the order of the history's columns; at least one
+  std::vector<Phase> phases{};           ///< of the path that ends at each row
   std::vector<EventMark> events;         ///< of contacts, material and particle; not of the program
   bool unloads_as_it_loads = false;      ///< the curves of unloading lie on those of loading, in every panel
 

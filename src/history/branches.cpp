@@ -324,7 +324,7 @@ std::vector<Excursion> excursions(const XyCurve& curve) {
       phase = Phase::loading;
     } else if (turn + 1 == k) {
       phase = Phase::unloading;
-      result.push_back({.back = {{curve.x[turn], x}, {curve.y[turn], curve.y[k]}}, .forth = {}});
+      result.push_back({.back = {{curve.x[turn], x}, {curve.y[turn], curve.y[k]}}});
     } else if (phase == Phase::unloading) {
       append(result.back().back);
     }

@@ -25,8 +25,8 @@ struct XyCurve {
 
 /// An unloading from the largest x so far, and the reloading that follows it.
 struct Excursion {
-  XyCurve back;   ///< unloading, from the row of the reversal; x falls
-  XyCurve forth;  ///< reloading, from the last row of `back` until x reaches its largest value again, or falls again
+  XyCurve back;     ///< unloading, from the row of the reversal; x falls
+  XyCurve forth{};  ///< reloading, from the last row of `back` until x reaches its largest value again, or falls again
 };
 /// Unloadings from the largest x so far, each with its reloading.
 [[nodiscard]] std::vector<Excursion> excursions(const XyCurve& curve);

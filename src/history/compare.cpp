@@ -39,7 +39,7 @@ struct Knot {
 /// A part of a curve with monotone x.
 struct Piece {
   double direction = 1.0;  ///< +1 where x increases, -1 where it decreases
-  std::vector<Knot> knots;
+  std::vector<Knot> knots{};
 };
 
 struct Curve {
@@ -86,7 +86,7 @@ struct Curve {
 }
 
 [[nodiscard]] Piece piece_between(const Curve& curve, std::size_t first, std::size_t last) {
-  Piece piece{.direction = curve.x[last] < curve.x[first] ? -1.0 : 1.0, .knots = {}};
+  Piece piece{.direction = curve.x[last] < curve.x[first] ? -1.0 : 1.0};
   for (std::size_t k = first; k <= last; ++k) {
     const double along = piece.direction * curve.x[k];
     if (std::isnan(along)) continue;

@@ -122,10 +122,9 @@ constexpr std::string_view k_blanks = " \t\r";
   const std::size_t bracket = heading.rfind('[');
   const bool has_unit =
       bracket != std::string_view::npos && bracket > 0 && heading.ends_with(']') && heading.size() > bracket + 2;
-  if (!has_unit) return {.name = std::string(heading), .unit = {}, .labels = {}};
+  if (!has_unit) return {.name = std::string(heading)};
   return {.name = std::string(heading.substr(0, bracket)),
-          .unit = std::string(heading.substr(bracket + 1, heading.size() - bracket - 2)),
-          .labels = {}};
+          .unit = std::string(heading.substr(bracket + 1, heading.size() - bracket - 2))};
 }
 
 [[nodiscard]] std::pair<std::string, std::string> parsed_header_line(std::string_view line) {

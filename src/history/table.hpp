@@ -17,9 +17,9 @@ namespace monograin {
 
 /// Description of one column. A column with labels holds words: its values are indices into the labels.
 struct Column {
-  std::string name;  ///< without the unit, e.g. "axial.force"
-  std::string unit;  ///< e.g. "N", "-"; empty for columns without a unit (step, row, regime)
-  std::vector<std::string> labels;
+  std::string name;    ///< without the unit, e.g. "axial.force"
+  std::string unit{};  ///< e.g. "N", "-"; empty for columns without a unit (step, row, regime)
+  std::vector<std::string> labels{};
 
   /// Name and unit as in a file, e.g. "axial.force[N]"; only the name if there is no unit.
   [[nodiscard]] std::string heading() const;

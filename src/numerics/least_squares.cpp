@@ -288,15 +288,15 @@ class Search {
     Search& search;
     Place trial;
     bool is_central = false;
-    std::vector<double> z;         ///< point of the last residuals
-    std::vector<double> values;    ///< the last residuals
-    std::vector<double> before_z;  ///< point of the last derivatives
-    std::vector<double> before;    ///< residuals at that point
-    std::size_t trials = 0;        ///< residuals evaluated since then
+    std::vector<double> z{};         ///< point of the last residuals
+    std::vector<double> values;      ///< the last residuals
+    std::vector<double> before_z{};  ///< point of the last derivatives
+    std::vector<double> before{};    ///< residuals at that point
+    std::size_t trials = 0;          ///< residuals evaluated since then
     Eigen::MatrixXd jacobian;
     std::vector<double> above;
     std::vector<double> below;
-    std::exception_ptr pending;  ///< exceptions do not cross C
+    std::exception_ptr pending{};  ///< exceptions do not cross C
 
     void put(const gsl_vector* at) {
       for (std::size_t k = 0; k < trial.z.size(); ++k) trial.z[k] = gsl_vector_get(at, k);
@@ -399,15 +399,11 @@ class Search {
     return {.search = *this,
             .trial = start,
             .is_central = is_central,
-            .z = {},
             .values = residuals_,
-            .before_z = {},
-            .before = {},
             .jacobian = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(problem_.residual_count),
                                               static_cast<Eigen::Index>(size_)),
             .above = residuals_,
-            .below = residuals_,
-            .pending = {}};
+            .below = residuals_};
   }
 
   /// Refines a minimum by Gauss-Newton steps. These do not minimise the cost itself, whose round-off hides the last

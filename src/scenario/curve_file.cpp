@@ -138,7 +138,7 @@ SampledCurve parse_columns(std::string_view text, const std::string& origin, std
   }
   const std::size_t before = faults.size();
   MeasuredData data = parse_measured(text, origin, wanted, faults);
-  SampledCurve table{.text = std::move(data.text), .x = {}, .y = {}};
+  SampledCurve table{.text = std::move(data.text)};
   if (faults.size() > before) return table;
   std::map<std::pair<double, double>, std::size_t> lines;  // lines of earlier rows, by their first two columns
   for (std::size_t row = 0; row < data.lines.size() && faults.size() < before + k_most_table_faults; ++row) {

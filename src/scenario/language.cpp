@@ -28,16 +28,7 @@ constexpr std::array<string_view, 2> k_centres{"fixed", "equilibrium"};
 constexpr std::array<string_view, 2> k_ludwik_fits{"both", "exponent"};
 
 // Replaces a model that is missing or misspelt, so that the loading is checked as far as no model is needed.
-constexpr Model k_any_model{.name = {},
-                            .summary = {},
-                            .source = {},
-                            .material = {},
-                            .options = {},
-                            .configurations = k_configurations,
-                            .has_free_centre = true,
-                            .regimes = {},
-                            .events = {},
-                            .domain = {}};
+constexpr Model k_any_model{.configurations = k_configurations, .has_free_centre = true};
 
 // Keys of steps and conditions of all models.
 constexpr std::array<string_view, 8> k_step_keys{

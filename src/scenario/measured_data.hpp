@@ -13,9 +13,9 @@ namespace monograin {
 
 /// A requested column, with the position and the text of the request: `x = "force[N]"`, `x = 2`.
 struct ColumnRequest {
-  std::string name;  ///< a heading, with or without its unit; empty: `number` selects the column
+  std::string name{};  ///< a heading, with or without its unit; empty: `number` selects the column
   SourceLocation where;
-  std::string naming;
+  std::string naming{};
   std::size_t number = 0;  ///< from 1; 0: `name` selects the column
 };
 

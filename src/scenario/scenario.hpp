@@ -42,9 +42,9 @@ struct Step {
   Kind kind = Kind::hold;
   double target = 0.0;             ///< value at the end of a ramp [SI]
   std::optional<double> duration;  ///< [s], > 0
-  std::optional<double> rate;      ///< of the ramp [SI], > 0
-  std::vector<Until> until;
-  SourceLocation where;
+  std::optional<double> rate{};    ///< of the ramp [SI], > 0
+  std::vector<Until> until{};
+  SourceLocation where{};
   std::optional<Lateral> lateral{};  ///< of a material point; none: the lateral quantity keeps its value
   Leg leg{};
   std::optional<double> start{};  ///< value at which the ramp is to begin [SI]; none: the present one
@@ -63,8 +63,8 @@ struct WallSpec {
   std::array<double, 3> normal{};  ///< outward, as given (not normalised), not zero
   double gap = 0.0;                ///< [m], >= 0
   bool is_fixed = false;
-  std::vector<Step> steps;  ///< empty: the steps of `[loading]` (unless fixed)
-  SourceLocation where;
+  std::vector<Step> steps{};  ///< empty: the steps of `[loading]` (unless fixed)
+  SourceLocation where{};
 };
 
 /// Angle between two directions of any length [rad].
@@ -85,8 +85,8 @@ struct Loading {
 };
 
 struct Output {
-  int points = 200;           ///< equal intervals per step; 0: the integrator's own steps
-  std::vector<double> times;  ///< [s], ascending; not empty: used instead of points
+  int points = 200;             ///< equal intervals per step; 0: the integrator's own steps
+  std::vector<double> times{};  ///< [s], ascending; not empty: used instead of points
 };
 
 struct Numerics {

@@ -145,7 +145,7 @@ class LayoutFinder {
   }
 
   TableLayout find() {
-    TableLayout layout{.encoding = {}, .separator = dialect_.separator, .decimal = dialect_.decimal};
+    TableLayout layout{.separator = dialect_.separator, .decimal = dialect_.decimal};
     if (rows_.empty()) return layout;
     find_width();
     const std::size_t first = first_of_data();

@@ -183,7 +183,7 @@ class Scope {
 [[nodiscard]] Table derived_table(std::span<const CheckedScenario> scenarios) {
   std::vector<Column> columns;
   for (const DerivedParameter& parameter : derived_parameters(scenarios.front())) {
-    columns.push_back({.name = std::string(parameter.name), .unit = std::string(parameter.unit), .labels = {}});
+    columns.push_back({.name = std::string(parameter.name), .unit = std::string(parameter.unit)});
   }
   Table table(std::move(columns));
   for (const CheckedScenario& scenario : scenarios) {
@@ -208,11 +208,7 @@ class FigureMaker {
     made_ = {.name = definition_.name,
              .title = definition_.title,
              .source = definition_.source,
-             .format = definition_.format,
-             .chart = {},
-             .tables = {},
-             .value_tables = {},
-             .stops = {}};
+             .format = definition_.format};
     if (definition_.adhesion_map) {
       made_.chart.panels = adhesion_panels(adhesion_maps(*definition_.adhesion_map));
       for (const Model& model : model_catalogue()) {
@@ -231,8 +227,7 @@ class FigureMaker {
   }
 
   [[nodiscard]] figure::ChartPanel chart_panel(const PanelSpec& spec) {
-    figure::ChartPanel panel{
-        .x = spec.x, .y = spec.y, .note = spec.note, .range = spec.fitted, .areas = {}, .series = {}};
+    figure::ChartPanel panel{.x = spec.x, .y = spec.y, .note = spec.note, .range = spec.fitted};
     for (const CurveSpec& curve : spec.curves) append_curves(curve, panel);
     for (const PointsSpec& points : spec.points) panel.series.push_back(chart_points(points));
     return panel;
@@ -353,7 +348,7 @@ class FigureMaker {
   [[nodiscard]] figure::ChartSeries chart_points(const PointsSpec& spec) {
     const XyCurve curve = chosen_rows(points_of(spec), spec.rows);
     figure::ChartSeries series{
-        .legend = spec.legend, .style = figure::ChartSeries::Style::points, .colour = spec.colour, .x = {}, .y = {}};
+        .legend = spec.legend, .style = figure::ChartSeries::Style::points, .colour = spec.colour};
     for (std::size_t row = 0; row < curve.x.size(); row += spec.every) {
       series.x.push_back(curve.x[row]);
       series.y.push_back(curve.y[row]);
@@ -362,7 +357,7 @@ class FigureMaker {
   }
 
   [[nodiscard]] ComparisonTable comparison_table(const TableSpec& spec) {
-    ComparisonTable table{.title = spec.title, .has_bands = !spec.bands.empty(), .rows = {}};
+    ComparisonTable table{.title = spec.title, .has_bands = !spec.bands.empty()};
     for (const ComparisonSpec& row : spec.rows) {
       const XyCurve reference = points_of(row.points);
       const std::vector<XyCurve> curves = curves_of(row.curve);
@@ -396,7 +391,7 @@ class FigureMaker {
   }
 
   [[nodiscard]] ValueTable value_table(const ValueTableSpec& spec) {
-    ValueTable table{.title = spec.title, .rows = {}};
+    ValueTable table{.title = spec.title};
     for (const ValueSpec& row : spec.rows) {
       const Values value = evaluated(row.value, Scope(nullptr, derived_parameters(*row.scenario)), faults_);
       if (value.empty()) continue;

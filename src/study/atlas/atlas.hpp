@@ -24,7 +24,7 @@ struct ComparisonRow {
 struct ComparisonTable {
   std::string title;
   bool has_bands = false;  ///< lines are bands of x instead of loadings up to reversals
-  std::vector<ComparisonRow> rows;
+  std::vector<ComparisonRow> rows{};
 };
 
 /// A computed value in a table of the atlas, and its reference.
@@ -38,7 +38,7 @@ struct ValueRow {
 
 struct ValueTable {
   std::string title;
-  std::vector<ValueRow> rows;
+  std::vector<ValueRow> rows{};
 };
 
 /// A definition whose contents have been computed; nothing is written yet.
@@ -47,10 +47,10 @@ struct AtlasFigure {
   std::string title;
   std::string source;
   std::string format;
-  figure::Chart chart;  ///< without panels if there are only tables
-  std::vector<ComparisonTable> tables;
-  std::vector<ValueTable> value_tables;    ///< a figure has tables of one kind only
-  std::vector<std::string> stops;          ///< runs that did not reach their end, with the reason
+  figure::Chart chart{};  ///< without panels if there are only tables
+  std::vector<ComparisonTable> tables{};
+  std::vector<ValueTable> value_tables{};  ///< a figure has tables of one kind only
+  std::vector<std::string> stops{};        ///< runs that did not reach their end, with the reason
   RunStatus status = RunStatus::complete;  ///< the worst of all runs
 };
 

@@ -166,9 +166,9 @@ constexpr const char* k_about_references = "Values as the laws give them, beside
 
 /// Titles and labels of a table for CSV; rows refer to them by number.
 struct Words {
-  Column titles{.name = "table", .unit = {}, .labels = {}};
-  Column labels{.name = "case", .unit = {}, .labels = {}};
-  Column quantities{.name = "quantity", .unit = {}, .labels = {}};
+  Column titles{.name = "table"};
+  Column labels{.name = "case"};
+  Column quantities{.name = "quantity"};
 
   /// @param has_quantities  true if the table has the third column
   [[nodiscard]] std::vector<double> last(bool has_quantities = false) const {
@@ -237,7 +237,7 @@ Table tables_csv(const AtlasFigure& figure) {
   }
   std::vector<Column> columns{std::move(words.titles), std::move(words.labels)};
   if (has_quantities) columns.push_back(std::move(words.quantities));
-  const auto add = [&columns](const char* heading) { columns.push_back({.name = heading, .unit = {}, .labels = {}}); };
+  const auto add = [&columns](const char* heading) { columns.push_back({.name = heading}); };
   if (figure.tables.empty()) {
     for (const char* heading : {"computed", "printed"}) add(heading);
     if (is_referenced) add("reference");

@@ -57,11 +57,7 @@ class DefinitionReader {
     Definition definition{.name = file_.stem().string(),
                           .title = root.text("title"),
                           .source = root.text("source"),
-                          .format = root.text("format"),
-                          .adhesion_map = {},
-                          .panels = {},
-                          .tables = {},
-                          .value_tables = {}};
+                          .format = root.text("format")};
     if (root.has("adhesion_map")) definition.adhesion_map = adhesion_map(root);
     const Inherited inherited{.x = formula(root, "x"), .y = formula(root, "y")};
     for (const auto& table : root.tables("panel", "[[panel]]")) {
@@ -164,9 +160,7 @@ class DefinitionReader {
     PanelSpec spec{.x = axis(section, root, 'x'),
                    .y = axis(section, root, 'y'),
                    .note = section.text("note"),
-                   .fitted = fitted(section.has("fitted") ? section : root),
-                   .curves = {},
-                   .points = {}};
+                   .fitted = fitted(section.has("fitted") ? section : root)};
     check_range(section, spec.x, 'x');
     check_range(section, spec.y, 'y');
     const auto own_x = formula(section, "x");
@@ -191,8 +185,7 @@ class DefinitionReader {
   [[nodiscard]] CurveSpec curve(const Section::Origin& table, const Inherited& inherited) {
     static const Keys keys = curve_keys();
     const Section section(reading_, table, keys);
-    CurveSpec spec{.scenarios = {},
-                   .sweep = 0,
+    CurveSpec spec{.sweep = 0,
                    .legends = {section.text("legend")},
                    .x = formula(section, "x", inherited.x),
                    .y = formula(section, "y", inherited.y),
@@ -200,8 +193,7 @@ class DefinitionReader {
                    .styles = {static_cast<Style>(place_of_word(k_styles, section.text("style")))},
                    .colour = colour(section),
                    .profile_at = section.number("profile_at"),
-                   .at_event = section.text("at_event"),
-                   .parameter = {}};
+                   .at_event = section.text("at_event")};
     if (section.has("parameter")) spec.parameter = parameter(section);
     const std::vector<Override> swept = section.has("sweep") ? sweep(section, spec) : std::vector<Override>{};
     const CurveSections sections{.curve = section,
@@ -401,8 +393,7 @@ class DefinitionReader {
       faults_.add(section.place(), "there is no 'y' for these points; expected y = \"force\"");
     }
     auto own_y = formula(section, "y");
-    PointsSpec spec{.table = {},
-                    .x = formula(section, "x").value_or(PlacedExpression{}),
+    PointsSpec spec{.x = formula(section, "x").value_or(PlacedExpression{}),
                     .y = own_y ? *own_y : y.value_or(PlacedExpression{}),
                     .rows = static_cast<RowChoice>(place_of_word(k_rows, section.text("rows"))),
                     .where = formula(section, "where"),
@@ -447,7 +438,7 @@ class DefinitionReader {
     Inherited inherited_by_rows{.x = own_x ? own_x : inherited.x,
                                 .y = own_y ? own_y : inherited.y,
                                 .vary = section.has("vary") ? &section : nullptr};
-    TableSpec spec{.title = plain(section, "title"), .bands = section.numbers("bands"), .rows = {}};
+    TableSpec spec{.title = plain(section, "title"), .bands = section.numbers("bands")};
     if (section.has("bands") && spec.bands.size() < 2) {
       faults_.add(section.value_place("bands"), "a band has two ends; expected two numbers at least");
     }
@@ -519,7 +510,7 @@ class DefinitionReader {
   [[nodiscard]] ValueTableSpec value_table(const Section::Origin& table) {
     static const Keys keys = value_table_keys();
     const Section section(reading_, table, keys);
-    ValueTableSpec spec{.title = plain(section, "title"), .rows = {}};
+    ValueTableSpec spec{.title = plain(section, "title")};
     for (const auto& row : section.tables("row", "[[values.row]]")) {
       static const Keys row_keys = value_keys();
       const Section entry(reading_, row, row_keys);

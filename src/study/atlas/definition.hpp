@@ -34,11 +34,11 @@ struct CurveSpec {
     double to = 1.0;
   };
 
-  std::vector<CheckedScenario> scenarios;  ///< at least one, except for a formula that needs none
-  std::size_t sweep = 0;                   ///< number of consecutive scenarios that make one curve of derived
-                                           ///< parameters; 0: runs
-  std::vector<std::string> legends;        ///< one for each curve, or one
-  std::vector<std::string> variants{};     ///< names of the curves of a varied key; empty: no key is varied
+  std::vector<CheckedScenario> scenarios{};  ///< at least one, except for a formula that needs none
+  std::size_t sweep = 0;                     ///< number of consecutive scenarios that make one curve of derived
+                                             ///< parameters; 0: runs
+  std::vector<std::string> legends;          ///< one for each curve, or one
+  std::vector<std::string> variants{};       ///< names of the curves of a varied key; empty: no key is varied
   PlacedExpression x;
   PlacedExpression y;
   RowChoice rows = RowChoice::all;
@@ -48,12 +48,12 @@ struct CurveSpec {
   std::vector<CheckedScenario> references{};
   std::optional<double> profile_at;  ///< [s]; if given, columns are those of contact profiles at that instant
   std::string at_event;              ///< if given, rows are the states just after events of this name
-  std::optional<Parameter> parameter;
+  std::optional<Parameter> parameter{};
 };
 
 /// Points from a file.
 struct PointsSpec {
-  Table table;
+  Table table{};
   PlacedExpression x;
   PlacedExpression y;
   RowChoice rows = RowChoice::all;
@@ -68,8 +68,8 @@ struct PanelSpec {
   figure::ChartAxis y;
   std::string note;
   std::optional<figure::ChartRange> fitted;
-  std::vector<CurveSpec> curves;
-  std::vector<PointsSpec> points;
+  std::vector<CurveSpec> curves{};
+  std::vector<PointsSpec> points{};
 };
 
 /// Curves that are compared with points, which are the reference.
@@ -84,8 +84,8 @@ struct ComparisonSpec {
 
 struct TableSpec {
   std::string title;
-  std::vector<double> bands;         ///< ends of the bands of x to measure; empty: loading up to each reversal
-  std::vector<ComparisonSpec> rows;  ///< rows with one label are consecutive
+  std::vector<double> bands;           ///< ends of the bands of x to measure; empty: loading up to each reversal
+  std::vector<ComparisonSpec> rows{};  ///< rows with one label are consecutive
 };
 
 /// A value made of the parameters that a model derives from a scenario, and its reference: the number printed in the
@@ -101,18 +101,18 @@ struct ValueSpec {
 
 struct ValueTableSpec {
   std::string title;
-  std::vector<ValueSpec> rows;
+  std::vector<ValueSpec> rows{};
 };
 
 struct Definition {
   std::string name;  ///< of the file, without folder and extension
   std::string title;
   std::string source;
-  std::string format;                               ///< svg, pdf, png
-  std::optional<AdhesionMapSettings> adhesion_map;  ///< its panels come first
-  std::vector<PanelSpec> panels;
-  std::vector<TableSpec> tables;
-  std::vector<ValueTableSpec> value_tables;  ///< alternative to `tables`: both would be written to the same files
+  std::string format;                                 ///< svg, pdf, png
+  std::optional<AdhesionMapSettings> adhesion_map{};  ///< its panels come first
+  std::vector<PanelSpec> panels{};
+  std::vector<TableSpec> tables{};
+  std::vector<ValueTableSpec> value_tables{};  ///< alternative to `tables`: both would be written to the same files
 };
 
 /// Reads and checks a definition with its scenarios and files, whose paths are relative to the definition's folder. The

@@ -37,11 +37,11 @@ struct FreeParameter : BoundedParameter {
 
 /// Measured quantity in a column of the data.
 struct MeasuredQuantity {
-  std::string observable;    ///< as in a history: "axial.force"
+  std::string observable{};  ///< as in a history: "axial.force"
   std::string unit;          ///< as given; values are SI
   double unit_factor = 1.0;  ///< one unit in SI
   std::string si;            ///< SI unit
-  std::vector<double> values;
+  std::vector<double> values{};
 };
 
 /// The two parts of a standard deviation of y, whose squares add.

@@ -485,7 +485,7 @@ class CalibrationReader {
     const std::size_t before = faults_.size();
     double factor = 0.0;  // unit of the column
     if (column != nullptr) {
-      MeasuredQuantity quantity{.observable = {}, .unit = measured.columns[2].unit, .si = y.si, .values = {}};
+      MeasuredQuantity quantity{.unit = measured.columns[2].unit, .si = y.si};
       factor = unit_factor(quantity, *column).value_or(0.0);
     }
     std::vector<double> weights;

@@ -35,7 +35,7 @@ TableFormat format_as(const TableLayout& layout) {
 }
 
 ColumnRequest request_by_number(std::size_t number, const std::string& file) {
-  return {.name = {}, .where = {file}, .naming = fmt::format("column {}", number), .number = number};
+  return {.where = {file}, .naming = fmt::format("column {}", number), .number = number};
 }
 
 std::string name_of_column(const MeasuredColumn& column) {
@@ -119,11 +119,8 @@ std::string meaning_of(const MeasuredQuantity& quantity) {
 /// Curve of all loading branches, or of all unloading ones; nan between them breaks the line.
 figure::ChartSeries branches_of(const DataReport& report, bool is_loading) {
   using Style = figure::ChartSeries::Style;
-  figure::ChartSeries series{.legend = is_loading ? "loading" : "unloading",
-                             .style = is_loading ? Style::solid : Style::dashed,
-                             .colour = 0,
-                             .x = {},
-                             .y = {}};
+  figure::ChartSeries series{
+      .legend = is_loading ? "loading" : "unloading", .style = is_loading ? Style::solid : Style::dashed, .colour = 0};
   for (const DataBranch& branch : report.branches) {
     if (branch.is_loading != is_loading) continue;
     for (std::size_t row = branch.begin; row <= branch.end; ++row) {
@@ -137,8 +134,7 @@ figure::ChartSeries branches_of(const DataReport& report, bool is_loading) {
 }
 
 figure::ChartSeries turning_points_of(const DataReport& report) {
-  figure::ChartSeries series{
-      .legend = "turning points", .style = figure::ChartSeries::Style::points, .colour = 0, .x = {}, .y = {}};
+  figure::ChartSeries series{.legend = "turning points", .style = figure::ChartSeries::Style::points, .colour = 0};
   for (std::size_t k = 1; k < report.branches.size(); ++k) {
     series.x.push_back(report.x.values[report.branches[k].begin]);
     series.y.push_back(report.y.values[report.branches[k].begin]);

@@ -36,7 +36,7 @@ KeySpec::Kind kind_of(const toml::table& table, std::string_view key, KeySpec::K
 }
 
 ColumnRequest request_of(const Section& section, std::string_view key, KeySpec::Kind kind) {
-  ColumnRequest request{.name = {}, .where = section.value_place(key), .naming = {}};
+  ColumnRequest request{.where = section.value_place(key)};
   if (kind == KeySpec::Kind::integer) {
     request.number = static_cast<std::size_t>(section.number(key).value_or(0.0));
     request.naming = fmt::format("{} = {}", key, request.number);
@@ -121,11 +121,8 @@ TableFormat format_of(Reading& reading, const Section& data, const DataKinds& ki
 
 ColumnSpec column_spec(Reading& reading, const Section& data, std::string_view key, KeySpec::Kind kind) {
   if (kind != KeySpec::Kind::table) {
-    return {.request = request_of(data, key, kind),
-            .quantity = {},
-            .unit = {},
-            .quantity_at = data.value_place(key),
-            .unit_at = data.value_place(key)};
+    return {
+        .request = request_of(data, key, kind), .quantity_at = data.value_place(key), .unit_at = data.value_place(key)};
   }
   const Section::Origin origin = data.table(key, std::string(key));
   const KeySpec::Kind column_kind = kind_of(*origin.table, "column", KeySpec::Kind::text);
@@ -148,8 +145,6 @@ std::optional<ColumnSpec> noise_column_in(const Section& data) {
   const Keys keys = noise_keys(Dimension::none, kind);
   const Section noise(reading, origin, keys);
   return ColumnSpec{.request = request_of(noise, "column", kind),
-                    .quantity = {},
-                    .unit = {},
                     .quantity_at = noise.value_place("column"),
                     .unit_at = noise.value_place("column")};
 }

@@ -25,8 +25,8 @@ namespace monograin::calibration {
 /// A column by which the file names it, with its quantity and unit.
 struct ColumnSpec {
   ColumnRequest request;
-  std::string quantity;  ///< empty: that of the column's heading
-  std::string unit;      ///< empty: that of the column's heading
+  std::string quantity{};  ///< empty: that of the column's heading
+  std::string unit{};      ///< empty: that of the column's heading
   SourceLocation quantity_at;
   SourceLocation unit_at;
 };

@@ -151,7 +151,7 @@ ModelComparison compare_models(std::span<const Calibration> calibrations, std::s
                                const std::function<void(double)>& progress) {
   check_comparable(calibrations);
   const Parts parts = parts_of(calibrations.front());
-  ModelComparison comparison{.fits = {}, .parts = parts.list.size(), .are_cycles = parts.are_cycles};
+  ModelComparison comparison{.parts = parts.list.size(), .are_cycles = parts.are_cycles};
   const double steps = static_cast<double>(calibrations.size() * parts.list.size());
   double done = 0.0;
   for (std::size_t k = 0; k < calibrations.size(); ++k) {

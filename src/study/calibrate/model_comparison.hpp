@@ -21,9 +21,9 @@ struct RankedFit {
 };
 
 struct ModelComparison {
-  std::vector<RankedFit> fits;  ///< in the order of the calibrations
-  std::size_t parts = 0;        ///< parts that were left out in turn; 0: the data cannot be divided
-  bool are_cycles = false;      ///< parts are cycles of loading and unloading; else stretches between turns
+  std::vector<RankedFit> fits{};  ///< in the order of the calibrations
+  std::size_t parts = 0;          ///< parts that were left out in turn; 0: the data cannot be divided
+  bool are_cycles = false;        ///< parts are cycles of loading and unloading; else stretches between turns
 };
 
 /// @throws std::runtime_error if fits cannot be compared: different rows, different weights, a robust loss

@@ -119,7 +119,7 @@ class ProgramOfBranches {
  private:
   [[nodiscard]] bool is_same(double a, double b) const noexcept { return !(std::abs(a - b) > same_); }
   void go_to(double target) {
-    program_.steps.push_back({.kind = kind_, .target = target, .duration = 1.0, .rate = {}, .until = {}, .where = {}});
+    program_.steps.push_back({.kind = kind_, .target = target, .duration = 1.0});
     at_ = target;
   }
 

@@ -29,7 +29,7 @@ std::shared_ptr<const ScenarioTemplate> NamedScenario::variants(const std::vecto
 std::optional<NamedScenario> scenario_in(Reading& reading, const Section& root, bool is_table, const std::string& text,
                                          const std::string& file) {
   if (!root.has("scenario")) return {};
-  NamedScenario found{.checked = {}, .text = {}, .file = file, .document = is_table ? text : std::string()};
+  NamedScenario found{.file = file, .document = is_table ? text : std::string()};
   if (!is_table) {
     const std::string name = root.text("scenario");
     if (name.empty()) return {};

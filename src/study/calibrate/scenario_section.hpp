@@ -13,8 +13,8 @@ namespace monograin::calibration {
 
 /// A scenario that can be read again with overrides.
 struct NamedScenario {
-  CheckedScenario checked;
-  std::string text;      ///< text of the scenario
+  CheckedScenario checked{};
+  std::string text{};    ///< text of the scenario
   std::string file;      ///< file that contains the text
   std::string document;  ///< text whose table `scenario` it is; empty: the scenario has a file of its own
 

@@ -280,7 +280,7 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
   ProgramInformation information;
   CheckedScenario scenario = program.scenario;
   scenario.sensitivities.clear();
-  scenario.output = {.points = 1, .times = {}};
+  scenario.output = {.points = 1};
   const Run first = run_scenario(scenario);
   const Table& rough = first.record.history;
   if (first.record.status != RunStatus::complete) {

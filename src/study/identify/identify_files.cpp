@@ -120,8 +120,7 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const bool is_determined = sets[s].errors->uncertainty.is_determined[k];
     panel.x.names.emplace_back(is_determined ? " " : "?");
-    figure::ChartArea bar{
-        .legend = figure::short_text(sets[s].name), .colour = k_colours[s % k_colours.size()], .boxes = {}};
+    figure::ChartArea bar{.legend = figure::short_text(sets[s].name), .colour = k_colours[s % k_colours.size()]};
     if (is_determined) {
       const double error = 100.0 * relative_error(plan, *sets[s].errors, k);
       const double place = static_cast<double>(s) + 1.0;
@@ -136,7 +135,7 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
 
 std::string draw(const ExperimentPlan& plan, const std::vector<NamedErrors>& sets,
                  const std::filesystem::path& folder) {
-  figure::Chart chart{.panels = {}, .area_heading = "Program"};
+  figure::Chart chart{.area_heading = "Program"};
   for (std::size_t k = 0; k < plan.free.size(); ++k) chart.panels.push_back(error_panel(plan, sets, k));
   chart.references = reference_texts(*find_model(plan.scenario.model));
   return figure::try_to_draw(chart, "expected errors of " + plan.name, folder / k_figure);

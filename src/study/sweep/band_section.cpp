@@ -36,7 +36,7 @@ std::vector<double> percentiles_in(Reading& reading, const Section& section) {
 PlacedBands bands_in(Reading& reading, const Section& root) {
   const std::vector<KeySpec> keys = band_keys();
   const Section section(reading, root.table("bands", "[bands]"), keys);
-  PlacedBands bands{.request = {.x = section.text("x"), .y = section.texts("y")}, .columns = {}};
+  PlacedBands bands{.request = {.x = section.text("x"), .y = section.texts("y")}};
   bands.columns.push_back({bands.request.x, section.value_place("x")});
   for (std::size_t i = 0; i < bands.request.y.size(); ++i) {
     bands.columns.push_back({bands.request.y[i], section.value_place("y", i)});

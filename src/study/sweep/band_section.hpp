@@ -12,7 +12,7 @@ namespace monograin::sweep {
 /// A request for bands, with the positions of its columns in the file.
 struct PlacedBands {
   BandRequest request;
-  std::vector<PlacedColumn> columns;
+  std::vector<PlacedColumn> columns{};
 };
 
 [[nodiscard]] PlacedBands bands_in(Reading& reading, const Section& root);

@@ -60,7 +60,7 @@ struct Stretch {
 struct RunCurves {
   std::map<std::size_t, Stretch> stretches;  ///< by step
   std::vector<double> x;
-  std::vector<std::vector<double>> y;  ///< in the order of the request
+  std::vector<std::vector<double>> y{};  ///< in the order of the request
 };
 
 /// Histories of all runs; a run that was refused has none.
@@ -73,7 +73,7 @@ struct RunCurves {
     const Table history = read_csv(file);
     const std::size_t x = place_of(history, sweep.bands->x);
     if (curves.empty()) bands.x = history.columns()[x];
-    RunCurves own{.stretches = stretches_of(history), .x = history.column(sweep.bands->x), .y = {}};
+    RunCurves own{.stretches = stretches_of(history), .x = history.column(sweep.bands->x)};
     for (const std::string& name : sweep.bands->y) {
       const std::size_t y = place_of(history, name);
       if (curves.empty()) bands.y.push_back(history.columns()[y]);
@@ -247,8 +247,7 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
     throw std::runtime_error(fmt::format("{}: no run has a history; the reasons are in results.csv", folder.string()));
   }
   for (const auto& [step, range] : ranges) {
-    StepBands& own = bands.steps.emplace_back(
-        StepBands{.step = step, .x = abscissae_of(range, request.points), .runs = {}, .percentiles = {}});
+    StepBands& own = bands.steps.emplace_back(StepBands{.step = step, .x = abscissae_of(range, request.points)});
     own.runs.assign(own.x.size(), 0);
     StepValues values(request.y.size(), std::vector<std::vector<double>>(own.x.size()));
     for (const RunCurves& run : runs) {

@@ -18,9 +18,9 @@ inline constexpr const char* k_bands_file = "bands.csv";
 struct StepBands {
   std::size_t step = 0;  ///< from 1
   std::vector<double> x;
-  std::vector<std::size_t> runs;  ///< that reach x in this step
+  std::vector<std::size_t> runs{};  ///< that reach x in this step
   /// For each y and each percentile the values over x; nan where less than 95 % of the runs have a value.
-  std::vector<std::vector<std::vector<double>>> percentiles;
+  std::vector<std::vector<std::vector<double>>> percentiles{};
 };
 
 struct HistoryBands {

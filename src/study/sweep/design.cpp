@@ -283,7 +283,7 @@ Design maxpro_design(const DesignSpace& space, std::size_t runs, std::uint64_t s
       throw std::domain_error(fmt::format("no clusters of at least {} points found", levels));
     }
     const std::vector<Members> clusters = allotted_clusters(sub_clusters, levels, dice);
-    Design design{.factors = space.factors, .level_count = space.level_count, .coordinates = {}, .levels = {}};
+    Design design{.factors = space.factors, .level_count = space.level_count};
     const std::vector<std::size_t> chosen = improved(candidates, clusters, space.factors, levels);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       std::ranges::copy(candidates.point(chosen[i]), std::back_inserter(design.coordinates));

@@ -11,10 +11,10 @@
 namespace monograin {
 
 struct Design {
-  std::size_t factors = 0;          ///< continuous ones
-  std::size_t level_count = 0;      ///< of the nominal factor; 0: there is none
-  std::vector<double> coordinates;  ///< point by point, each coordinate in [0, 1]
-  std::vector<std::size_t> levels;  ///< of every point, below level_count; empty: no nominal factor
+  std::size_t factors = 0;            ///< continuous ones
+  std::size_t level_count = 0;        ///< of the nominal factor; 0: there is none
+  std::vector<double> coordinates{};  ///< point by point, each coordinate in [0, 1]
+  std::vector<std::size_t> levels{};  ///< of every point, below level_count; empty: no nominal factor
 
   [[nodiscard]] std::size_t size() const noexcept { return factors == 0 ? 0 : coordinates.size() / factors; }
   [[nodiscard]] std::span<const double> point(std::size_t index) const {
@@ -33,9 +33,9 @@ struct Design {
 
 /// The cube that a design has to fill.
 struct DesignSpace {
-  std::size_t factors = 1;                                ///< at least 1
-  std::size_t level_count = 0;                            ///< of the nominal factor; 0: there is none
-  std::function<bool(std::span<const double>)> contains;  ///< which points are allowed; empty: all
+  std::size_t factors = 1;                                  ///< at least 1
+  std::size_t level_count = 0;                              ///< of the nominal factor; 0: there is none
+  std::function<bool(std::span<const double>)> contains{};  ///< which points are allowed; empty: all
 };
 
 /// Fast flexible filling: the function clusters uniform candidates, gives every level one point in each primary

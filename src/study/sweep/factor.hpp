@@ -57,9 +57,9 @@ struct Factor {
   std::string key;  ///< path as of `--set`
   KeySpec spec;
   SourceLocation where;
-  std::optional<FactorRange> range;
-  std::optional<FactorDistribution> distribution;
-  std::vector<FactorValue> values;
+  std::optional<FactorRange> range{};
+  std::optional<FactorDistribution> distribution{};
+  std::vector<FactorValue> values{};
 
   /// The value at a share, between 0 and 1, of the range, the distribution or the list.
   [[nodiscard]] FactorValue at(double share) const;

@@ -47,7 +47,7 @@ class Draw {
       gsl_qrng_alloc(type, static_cast<unsigned>(factors)), gsl_qrng_free);
   std::vector<double> move(factors);
   std::ranges::generate(move, [&] { return draw.share(); });
-  Design design{.factors = factors, .level_count = 0, .coordinates = std::vector<double>(factors * runs), .levels = {}};
+  Design design{.factors = factors, .level_count = 0, .coordinates = std::vector<double>(factors * runs)};
   for (std::size_t run = 0; run < runs; ++run) {
     const std::span<double> point = std::span(design.coordinates).subspan(run * factors, factors);
     gsl_qrng_get(generator.get(), point.data());
@@ -62,7 +62,7 @@ Design sampled_design(std::string_view name, std::size_t factors, std::size_t ru
   Draw draw(seed);
   if (name == "sobol") return sequence(gsl_qrng_sobol, factors, runs, draw);
   if (name == "halton") return sequence(gsl_qrng_halton, factors, runs, draw);
-  Design design{.factors = factors, .level_count = 0, .coordinates = std::vector<double>(factors * runs), .levels = {}};
+  Design design{.factors = factors, .level_count = 0, .coordinates = std::vector<double>(factors * runs)};
   if (name == "random") {
     std::ranges::generate(design.coordinates, [&] { return draw.share(); });
     return design;
@@ -82,7 +82,7 @@ Design sampled_design(std::string_view name, std::size_t factors, std::size_t ru
 Design saltelli_design(std::size_t factors, std::size_t samples, std::uint64_t seed) {
   Draw draw(seed);
   const Design pairs = sequence(gsl_qrng_sobol, 2 * factors, samples, draw);
-  Design design{.factors = factors, .level_count = 0, .coordinates = {}, .levels = {}};
+  Design design{.factors = factors, .level_count = 0};
   design.coordinates.reserve(samples * factors * (factors + 2));
   for (std::size_t sample = 0; sample < samples; ++sample) {
     const std::span<const double> a = pairs.point(sample).first(factors);
@@ -99,7 +99,7 @@ Design saltelli_design(std::size_t factors, std::size_t samples, std::uint64_t s
 Design morris_design(std::size_t factors, std::size_t trajectories, std::uint64_t seed) {
   Draw draw(seed);
   constexpr std::size_t k_step = k_morris_levels / 2;
-  Design design{.factors = factors, .level_count = 0, .coordinates = {}, .levels = {}};
+  Design design{.factors = factors, .level_count = 0};
   std::vector<std::size_t> order(factors);
   std::vector<std::size_t> levels(factors);
   for (std::size_t trajectory = 0; trajectory < trajectories; ++trajectory) {

@@ -95,8 +95,7 @@ using Style = figure::ChartSeries::Style;
     panel.series.push_back(
         {.legend = legend, .style = Style::points, .colour = k, .x = {first, second}, .y = {own.value, total.value}});
     for (const auto& [x, estimate] : {std::pair(first, own), std::pair(second, total)}) {
-      panel.series.push_back(
-          {.legend = {}, .style = Style::solid, .colour = k, .x = {x, x}, .y = {estimate.lower, estimate.upper}});
+      panel.series.push_back({.style = Style::solid, .colour = k, .x = {x, x}, .y = {estimate.lower, estimate.upper}});
     }
   }
   return panel;
@@ -114,8 +113,7 @@ using Style = figure::ChartSeries::Style;
                             .colour = k,
                             .x = {size},
                             .y = {spread}});
-    panel.series.push_back(
-        {.legend = {}, .style = Style::solid, .colour = k, .x = {lower, upper}, .y = {spread, spread}});
+    panel.series.push_back({.style = Style::solid, .colour = k, .x = {lower, upper}, .y = {spread, spread}});
   }
   return panel;
 }

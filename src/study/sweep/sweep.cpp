@@ -68,16 +68,16 @@ struct Outcome {
 
 /// Which values of a history become cells of results.csv, and their headings: final values, then extreme ones.
 struct Layout {
-  std::vector<Column> columns;        ///< of the history
-  std::vector<std::size_t> finals;    ///< columns whose final value is a cell
-  std::vector<std::size_t> largest;   ///< columns whose largest value is one
-  std::vector<std::size_t> smallest;  ///< columns whose smallest value is one
-  std::string headings;
+  std::vector<Column> columns;          ///< of the history
+  std::vector<std::size_t> finals{};    ///< columns whose final value is a cell
+  std::vector<std::size_t> largest{};   ///< columns whose largest value is one
+  std::vector<std::size_t> smallest{};  ///< columns whose smallest value is one
+  std::string headings{};
 };
 
 /// @param wanted  results such as max.axial.force; empty: all final and largest values
 [[nodiscard]] Layout layout_of(const std::vector<Column>& columns, const std::vector<std::string>& wanted) {
-  Layout layout{.columns = columns, .finals = {}, .largest = {}, .smallest = {}, .headings = {}};
+  Layout layout{.columns = columns};
   std::vector<std::string> headings;
   const auto add = [&](std::string_view prefix, std::vector<std::size_t>& places, bool takes_words) {
     for (std::size_t k = 0; k < columns.size(); ++k) {

@@ -196,8 +196,7 @@ class SweepReader {
       faults_.add(where, answer.problem);
       return std::nullopt;
     }
-    return Factor{
-        .key = key, .spec = std::move(*answer.spec), .where = where, .range = {}, .distribution = {}, .values = {}};
+    return Factor{.key = key, .spec = std::move(*answer.spec), .where = where};
   }
 
   // --- [vary]
@@ -368,7 +367,7 @@ class SweepReader {
   void make_maxpro(const Section& root) {
     check_constraint_names(false);
     if (faults_.size() > 0) return;
-    DesignSpace space{.factors = 0, .level_count = 0, .contains = {}};
+    DesignSpace space{.factors = 0, .level_count = 0};
     std::size_t combinations = 1;
     for (const Factor& factor : factors_) {
       if (factor.range) {
@@ -555,7 +554,7 @@ class SweepReader {
   /// The table's rows as points of the cube. A number is scaled between the ends that [vary] gives, else between its
   /// own smallest and largest value; words and listed values are levels.
   [[nodiscard]] Design points_of(std::size_t rows) const {
-    Design design{.factors = 0, .level_count = 0, .coordinates = {}, .levels = {}};
+    Design design{.factors = 0, .level_count = 0};
     std::vector<std::optional<FactorRange>> ranges;
     for (std::size_t f = 0; f < factors_.size(); ++f) {
       const Factor& factor = factors_[f];

@@ -265,7 +265,7 @@ std::pair<Standard, Standard> standards_of(const CheckedScenario& scenario) {
 /// Measures a point except for its repeated times.
 BenchPoint measure_point(const CheckedScenario& scenario, const std::string& name, const std::string& integrator,
                          double rtol, const Standard& standard) {
-  BenchPoint point{.integrator = name, .rtol = rtol, .statistics = {}, .fault = {}};
+  BenchPoint point{.integrator = name, .rtol = rtol};
   const RunRecord record = run_once(scenario, integrator, rtol, &point.fastest);
   point.statistics = record.statistics;
   point.curve_error = point.end_error = point.event_error = k_nan;
@@ -298,7 +298,7 @@ CheckedScenario with_walls_out_of_reach(CheckedScenario simple) {
   loading.configuration = Loading::Configuration::walls;
   const double gap = 2.0 * simple.radius;
   const auto wall = [](const char* name, const std::array<double, 3>& normal, double off) {
-    return WallSpec{.name = name, .normal = normal, .gap = off, .is_fixed = off > 0.0, .steps = {}, .where = {}};
+    return WallSpec{.name = name, .normal = normal, .gap = off, .is_fixed = off > 0.0};
   };
   loading.walls = {wall("axial", {0.0, 0.0, 1.0}, 0.0),      wall("axial-", {0.0, 0.0, -1.0}, 0.0),
                    wall("lateral-x+", {1.0, 0.0, 0.0}, gap), wall("lateral-x-", {-1.0, 0.0, 0.0}, gap),
@@ -456,8 +456,7 @@ BenchScene measure_scene(const CheckedScenario& scenario, const BenchSettings& s
                     .title = scenario.title,
                     .chosen = choose_integrator(integrators::k_auto, *make_scene(scenario).system).used,
                     .reference = first.integrator,
-                    .check = second.integrator,
-                    .points = {}};
+                    .check = second.integrator};
   result.agreement = curve_error(first.record.history, second.record.history).whole;
   result.rows = first.record.history.row_count();
   Stopwatch setup([&] {

@@ -30,22 +30,22 @@ struct BenchPoint {
   double event_error = 0.0;  ///< largest error of an event's time, over the whole time; nan if there are other events
   double fastest = 0.0;      ///< shortest processor time of a run [s], with recording, without set-up of the scene
   double median = 0.0;       ///< median processor time of a run [s]
-  Statistics statistics;
-  std::string fault;  ///< why the run has no errors; empty if it has
+  Statistics statistics{};
+  std::string fault{};  ///< why the run has no errors; empty if it has
 };
 
 /// Measurements of one scene.
 struct BenchScene {
-  std::string name;
-  std::string title;
-  std::string chosen;       ///< integrator that "auto" chooses
-  std::string reference;    ///< integrator of the reference, from which errors are measured
-  std::string check;        ///< integrator from which errors of the reference's own integrator are measured
+  std::string name{};
+  std::string title{};
+  std::string chosen{};     ///< integrator that "auto" chooses
+  std::string reference{};  ///< integrator of the reference, from which errors are measured
+  std::string check{};      ///< integrator from which errors of the reference's own integrator are measured
   double agreement = 0.0;   ///< curve error of these two against each other
   double setup = 0.0;       ///< time to make the scene from its scenario [s]
   double evaluation = 0.0;  ///< time of one evaluation of the law along the history: a solution or its rates [s]
   std::size_t rows = 0;     ///< rows of the history
-  std::vector<BenchPoint> points;
+  std::vector<BenchPoint> points{};
 };
 
 /// Shares of the time of one run [s], clocks included; the rest of the total is the integrator's own.

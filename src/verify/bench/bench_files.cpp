@@ -253,8 +253,8 @@ void append_savings(const std::vector<BenchSaving>& savings, std::string& text) 
 }
 
 [[nodiscard]] Table csv_of(const std::vector<BenchScene>& scenes) {
-  Column scene_words{.name = "scene", .unit = {}, .labels = {}};
-  Column names{.name = "integrator", .unit = {}, .labels = {}};
+  Column scene_words{.name = "scene"};
+  Column names{.name = "integrator"};
   for (const std::string_view name : integrators_of(scenes)) names.labels.emplace_back(name);
   for (const BenchScene& scene : scenes) scene_words.labels.push_back(scene.name);
   std::vector<Column> columns{scene_words, names};
@@ -324,12 +324,8 @@ void compare_panels(figure::Chart& chart) {
   for (const char* note : k_panels) chart.panels.push_back({.x = x, .y = y, .note = note});
   for (const Line& line : k_lines) {
     for (const BenchScene& scene : scenes) {
-      ChartSeries series{.legend = std::string(line.integrator),
-                         .style = line.style,
-                         .colour = line.colour,
-                         .x = {},
-                         .y = {},
-                         .is_error = true};
+      ChartSeries series{
+          .legend = std::string(line.integrator), .style = line.style, .colour = line.colour, .is_error = true};
       for (const BenchPoint& point : scene.points) {
         if (point.integrator != line.integrator) continue;
         const auto [along, up] = place(point);
@@ -346,7 +342,7 @@ void compare_panels(figure::Chart& chart) {
 
 /// A scene that stands for all scenes: it has their largest event error for each integrator and tolerance.
 [[nodiscard]] BenchScene worst_events(const std::vector<BenchScene>& scenes) {
-  BenchScene worst{.name = {}, .title = {}, .chosen = {}, .reference = {}, .check = {}, .points = {}};
+  BenchScene worst{};
   for (const BenchScene& scene : scenes) {
     for (const BenchPoint& point : scene.points) {
       // `direct` and `auto` have no tolerance of their own.
@@ -390,9 +386,7 @@ constexpr double k_least_error = 1e-16;  ///< figures show an error of zero as t
     if (line.integrator == integrators::k_auto) continue;
     ChartSeries series{.legend = std::string(line.integrator),
                        .style = line.style == ChartSeries::Style::points ? ChartSeries::Style::dotted : line.style,
-                       .colour = line.colour,
-                       .x = {},
-                       .y = {}};
+                       .colour = line.colour};
     std::size_t most = 0;
     for (int k = 3; k <= 11; ++k) {
       const double error = std::pow(10.0, -k);

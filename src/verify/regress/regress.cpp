@@ -107,7 +107,7 @@ void compare_with_stored(const Run& run, const fs::path& curves, RegressionResul
 }
 
 RegressionResult compare(const Run& run, const fs::path& curves) {
-  RegressionResult result{.scenario = run.scenario.name, .integrator = run.integrator.used, .column = {}, .fault = {}};
+  RegressionResult result{.scenario = run.scenario.name, .integrator = run.integrator.used};
   result.tolerance = run.integrator.is_direct() ? k_direct_tolerance : k_rtol_multiple * run.scenario.numerics.rtol;
   try {
     compare_with_stored(run, curves, result);
@@ -133,8 +133,6 @@ std::vector<RegressionResult> orphaned_curves(const std::vector<fs::path>& scena
     if (!names.insert(name).second) continue;
     results.push_back(
         {.scenario = name,
-         .integrator = {},
-         .column = {},
          .fault = fmt::format("{} has no scenario; remove it, or bring {}.toml back", file.string(), name)});
   }
   return results;

@@ -12,12 +12,12 @@ namespace monograin {
 /// Difference of one scenario, run by one integrator, from its stored curve; nan where nothing could be compared.
 struct RegressionResult {
   std::string scenario;
-  std::string integrator;     ///< empty: a stored curve that has no scenario
+  std::string integrator{};   ///< empty: a stored curve that has no scenario
   double difference = k_nan;  ///< largest of any column, over the column's largest magnitude; contact radii are squared
-  std::string column;         ///< column of that difference
+  std::string column{};       ///< column of that difference
   double event_time = k_nan;  ///< largest difference of an event's time, over the run's length
   double tolerance = 0.0;     ///< largest admissible value of both differences
-  std::string fault;          ///< differences that are no numbers, or why nothing was compared; empty: none
+  std::string fault{};        ///< differences that are no numbers, or why nothing was compared; empty: none
 
   [[nodiscard]] bool passes() const noexcept {
     return fault.empty() && difference <= tolerance && event_time <= tolerance;

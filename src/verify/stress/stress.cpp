@@ -142,9 +142,7 @@ class StressTest {
                                   .model = model,
                                   .integrator = checked.scene.integrator,
                                   .check = violation.check,
-                                  .detail = violation.detail,
-                                  .text = {},
-                                  .file = {}});
+                                  .detail = violation.detail});
     }
     if (!options_.progress) return;
     const double share = std::min(1.0, seconds_since(start_) / options_.seconds);

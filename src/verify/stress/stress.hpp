@@ -33,8 +33,8 @@ struct StressFailure {
   std::string integrator;
   std::string check;
   std::string detail;
-  std::string text;  ///< the smallest scenario found that still breaks it
-  std::string file;  ///< name of its file in the folder
+  std::string text{};  ///< the smallest scenario found that still breaks it
+  std::string file{};  ///< name of its file in the folder
 };
 
 /// Outcome of a stress test. The outcome of each scene depends on the seed and the models only, not on the number of

@@ -35,8 +35,7 @@ std::vector<WallSpec> specs_of(const CheckedScenario& scenario) {
                      .normal = {wall.normal.x(), wall.normal.y(), wall.normal.z()},
                      .gap = wall.gap,
                      .is_fixed = wall.steps.empty(),
-                     .steps = wall.steps,
-                     .where = {}});
+                     .steps = wall.steps});
   }
   return specs;
 }

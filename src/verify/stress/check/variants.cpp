@@ -87,7 +87,7 @@ std::optional<Target> after(std::optional<Target> before, Step::Kind kind, doubl
 /// Quantities and values from which a step's ramps start; nothing if an earlier step leaves them open.
 struct Start {
   std::optional<Target> first;
-  std::optional<Target> lateral;
+  std::optional<Target> lateral{};
 };
 
 /// True if a condition or a withdrawal of any wall may end a step of the program, which then ends for all walls.
@@ -118,7 +118,7 @@ Start start_of(const CheckedScenario& scenario, const std::vector<Step>& steps, 
 /// Start of the first step: a wall starts at its gap, a channel of a model without walls at its value at rest.
 Start rest_of(const CheckedScenario& scenario, const Step& first, double gap) {
   const Model& model = *find_model(scenario.model);
-  if (model.has_walls()) return {.first = Target{Step::Kind::displacement, -gap}, .lateral = {}};
+  if (model.has_walls()) return {.first = Target{Step::Kind::displacement, -gap}};
   const auto known = [](const RestingChannel& rest, Step::Kind kind) -> std::optional<Target> {
     if (control_of(kind) == rest.at_rest.control) return Target{kind, rest.at_rest.start};
     return rest.is_unloaded_at_rest ? std::optional(Target{kind, 0.0}) : std::nullopt;

@@ -75,7 +75,7 @@ void draw_free_walls(Dice& dice, StressScene& scene, const ProgramBounds& bounds
   std::vector<double> durations;
   for (const std::array<double, 3>& normal :
        set.is_cell ? draw_cell(dice) : draw_normals(dice, scene.model->least_wall_angle)) {
-    StressWall wall{.name = fmt::format("w{}", scene.walls.size()), .normal = normal, .gap = 0.0, .steps = {}};
+    StressWall wall{.name = fmt::format("w{}", scene.walls.size()), .normal = normal, .gap = 0.0};
     if (is_loose || dice.happens(0.4)) wall.gap = dice.happens(0.5) ? shared_gap : dice.uniform(0.0, 0.05);
     wall.is_fixed = !scene.walls.empty() && dice.happens(0.3);
     if (set.have_own && !wall.is_fixed) {

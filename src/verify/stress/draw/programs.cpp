@@ -121,7 +121,6 @@ std::vector<StressStep> stress_steps(const std::vector<DrawnStep>& program) {
   for (const DrawnStep& drawn : program) {
     StressStep step{.kind = drawn.control ? ramp_of(*drawn.control) : Step::Kind::hold,
                     .target = drawn.target,
-                    .lateral = {},
                     .pace = drawn.pace,
                     .has_rate = drawn.has_rate,
                     .until = drawn.until,

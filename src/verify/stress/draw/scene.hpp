@@ -19,7 +19,7 @@ namespace monograin {
 struct StressStep {
   Step::Kind kind = Step::Kind::displacement;
   double target = 0.0;
-  std::optional<double> lateral;  ///< target of lateral_kind, in the second channel of a material point
+  std::optional<double> lateral{};  ///< target of lateral_kind, in the second channel of a material point
   Step::Kind lateral_kind = Step::Kind::strain;
   double pace = 1.0;  ///< duration [s]; if has_rate, the rate in units of the target per second
   bool has_rate = false;
@@ -36,7 +36,7 @@ struct StressWall {
   std::array<double, 3> normal{};
   double gap = 0.0;  ///< in R0
   bool is_fixed = false;
-  std::vector<StressStep> steps;  ///< empty: the steps of the scene (unless fixed)
+  std::vector<StressStep> steps{};  ///< empty: the steps of the scene (unless fixed)
 
   bool operator==(const StressWall&) const = default;
 };
