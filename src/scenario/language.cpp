@@ -142,12 +142,7 @@ std::vector<KeySpec> wall_keys() {
        .kind = Kind::direction,
        .is_required = true,
        .example = "[0, 0, 1]"},
-      {.name = "gap",
-       .meaning = "distance from first touch at the start",
-       .kind = Kind::quantity,
-       .dimension = Dimension::length,
-       .range = k_not_negative,
-       .default_value = 0.0},
+      quantity_key({"gap", "distance from first touch at the start", Dimension::length, k_not_negative, 0.0}),
       {.name = "fixed", .meaning = "the wall does not move", .kind = Kind::toggle, .default_value = false},
       key_of(Kind::tables, "steps", "program of this wall alone", "[[loading.wall.steps]]"),
   };
@@ -205,29 +200,15 @@ std::vector<KeySpec> material_keys(const Model& model) {
 
 std::vector<KeySpec> ludwik_keys() {
   return {
-      {.name = "yield_stress",
-       .meaning = "stress at first yield",
-       .kind = Kind::quantity,
-       .is_required = true,
-       .dimension = Dimension::stress,
-       .range = k_not_negative},
-      {.name = "strength",
-       .meaning = "K of sigma = Y + K eps_pl^(1/n)",
-       .kind = Kind::quantity,
-       .is_required = true,
-       .dimension = Dimension::stress,
-       .range = k_not_negative},
+      quantity_key({"yield_stress", "stress at first yield", Dimension::stress, k_not_negative}),
+      quantity_key({"strength", "K of sigma = Y + K eps_pl^(1/n)", Dimension::stress, k_not_negative}),
       {.name = "exponent",
        .meaning = "1/n of sigma = Y + K eps_pl^(1/n)",
        .kind = Kind::quantity,
        .is_required = true,
        .range = {.lower = 0.0, .upper = 1.0, .lower_is_open = true},
        .example = "0.35"},
-      {.name = "eps_max",
-       .meaning = "largest strain of the fit",
-       .kind = Kind::quantity,
-       .range = k_positive,
-       .default_value = 1.0},
+      quantity_key({"eps_max", "largest strain of the fit", Dimension::none, k_positive, 1.0}),
       first_by_default(
           choice_key("fit", "what is fitted: both parameters, or the exponent with the strength Y + K", k_ludwik_fits)),
   };
@@ -321,16 +302,8 @@ std::vector<KeySpec> until_keys(const Model& model) {
   if (!model.has_contact_area) return keys;
   const std::vector<KeySpec> of_area{
       {.name = "pressure", .meaning = "mean contact pressure", .kind = Kind::quantity, .dimension = Dimension::stress},
-      {.name = "contact_radius",
-       .meaning = "contact radius",
-       .kind = Kind::quantity,
-       .dimension = Dimension::length,
-       .range = k_not_negative},
-      {.name = "apparent_radius",
-       .meaning = "apparent radius of the particle",
-       .kind = Kind::quantity,
-       .dimension = Dimension::length,
-       .range = k_positive},
+      quantity_key({"contact_radius", "contact radius", Dimension::length, k_not_negative, {}, true}),
+      quantity_key({"apparent_radius", "apparent radius of the particle", Dimension::length, k_positive, {}, true}),
   };
   keys.insert(keys.end() - 1, of_area.begin(), of_area.end());
   return keys;
@@ -339,21 +312,11 @@ std::vector<KeySpec> until_keys(const Model& model) {
 // --- steps
 
 KeySpec duration_key(bool is_required) {
-  return {.name = "duration",
-          .meaning = "how long the step takes",
-          .kind = Kind::quantity,
-          .is_required = is_required,
-          .dimension = Dimension::time,
-          .range = k_positive};
+  return quantity_key({"duration", "how long the step takes", Dimension::time, k_positive, {}, !is_required});
 }
 
 KeySpec rate_key(Dimension dimension, bool is_required) {
-  return {.name = "rate",
-          .meaning = "how fast the controlled quantity changes",
-          .kind = Kind::quantity,
-          .is_required = is_required,
-          .dimension = dimension,
-          .range = k_positive};
+  return quantity_key({"rate", "how fast the controlled quantity changes", dimension, k_positive, {}, !is_required});
 }
 
 KeySpec until_key(const Model& model) {
@@ -418,12 +381,7 @@ CourseForm course_form(const KeySpec& target, string_view column) {
                 .example = "{ mean = ..., amplitude = ..., frequency = \"1 Hz\", cycles = 5 }"}};
   form.in_sine = {value_key("mean", "mean of the sine", {}),
                   value_key("amplitude", "distance from the mean to the extrema", k_positive),
-                  {.name = "frequency",
-                   .meaning = "cycles over time",
-                   .kind = Kind::quantity,
-                   .is_required = true,
-                   .dimension = Dimension::frequency,
-                   .range = k_positive},
+                  quantity_key({"frequency", "cycles over time", Dimension::frequency, k_positive}),
                   {.name = "cycles",
                    .meaning = "number of cycles",
                    .kind = Kind::integer,
