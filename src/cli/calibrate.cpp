@@ -63,7 +63,7 @@ Calibration read(const std::string& file, const CalibrateOptions& options) {
 /// Fits a calibration, and writes the results into a folder.
 CalibrationResult run_calibration(const Calibration& calibration, const fs::path& folder,
                                   const CalibrateOptions& options) {
-  StagedFolder staged(folder, k_calibration_marker);
+  StagedFolder staged(folder, k_calibration_marker, k_calibration_tables);
   CalibrationResult result = [&] {
     ProgressLine line(!options.is_quiet);
     return calibrate(calibration, [&line](double done) { line.show(done); });

@@ -82,7 +82,7 @@ void choose_folders(std::vector<Job>& jobs, const std::string& output) {
                       job.scenario.name, job.folder.string()));
     }
   }
-  for (Job& job : jobs) job.staged = std::make_unique<StagedFolder>(job.folder);
+  for (Job& job : jobs) job.staged = std::make_unique<StagedFolder>(job.folder, k_run_marker, k_run_tables);
 }
 
 /// Draws the figure of a run; warns if this fails, because a run must not fail for its figure.

@@ -98,8 +98,8 @@ std::string run_json(const Run& run) {
 
 void write_run(Run& run, StagedFolder& folder, const std::function<void(const fs::path&)>& draw) {
   const auto start = std::chrono::steady_clock::now();
-  write_table(run.record.history, folder.path() / "history.csv");
-  write_table(run.record.events, folder.path() / "events.csv");
+  write_table(run.record.history, folder.path() / k_run_tables[0]);
+  write_table(run.record.events, folder.path() / k_run_tables[1]);
   run.timings.output = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_text_file(folder.path() / k_run_marker, run_json(run));
   if (draw) draw(folder.path());

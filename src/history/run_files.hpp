@@ -1,14 +1,19 @@
 /// Files of a run: history.csv, events.csv, run.json, and a figure if requested.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "history/run.hpp"
 #include "history/staged_folder.hpp"
 
 namespace monograin {
+
+/// Files that the folder of every run has beside k_run_marker.
+inline constexpr std::array<std::string_view, 2> k_run_tables{"history.csv", "events.csv"};
 
 /// Restores the scenario of a run from its folder. Overrides and tables come from run.json, so that the run can be
 /// repeated after their files have changed.

@@ -34,6 +34,8 @@ constexpr std::string_view k_staged_infix = ".monograin-staged-";
 constexpr std::size_t k_random_length = 6;  ///< characters that mkdtemp replaces
 /// Characters of the target's name in that of the hidden folder; file systems allow 255 in all.
 constexpr std::size_t k_longest_name = 200;
+/// Time of a result above which its loss costs more than to flush it, which takes 10 to 40 ms on a busy disk.
+constexpr std::chrono::seconds k_worth_flushing{1};
 // Largest files that are read: for a digest or a list, and as a marker [bytes].
 constexpr std::size_t k_largest_file = std::size_t{4} << 30U;
 constexpr std::size_t k_largest_marker = std::size_t{256} << 20U;
@@ -223,7 +225,6 @@ void move_files(const fs::path& staged, const fs::path& target, const std::strin
   std::size_t linked = 0;
   while (linked < kept.size() && link((target / kept[linked]).c_str(), (staged / kept[linked]).c_str()) == 0) ++linked;
   if (linked == kept.size() && chmod(staged.c_str(), is.st_mode & 07777U) == 0) {
-    sync_to_disk(staged);
     const SignalsHeld held;
     if (renameat2(AT_FDCWD, staged.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return true;
   }
@@ -272,7 +273,7 @@ void clear_leftovers(const fs::path& folder, std::string_view prefix, const fs::
 
 }  // namespace
 
-StagedFolder::StagedFolder(const fs::path& target, std::string_view marker)
+StagedFolder::StagedFolder(const fs::path& target, std::string_view marker, std::span<const std::string_view> names)
     : target_(resolved(target)), marker_(marker) {
   if (fs::exists(target_)) {
     if (!fs::is_directory(target_)) refuse(target_, "is a file; expected a folder for the result");
@@ -282,6 +283,7 @@ StagedFolder::StagedFolder(const fs::path& target, std::string_view marker)
       clear_leftovers(target_.parent_path(), prefix_beside(target_), target_, marker_);
     }
     replaces_own_ = holds_own_result(target_, marker_);
+    for (const std::string_view name : names) check_name(std::string(name));
   } else {
     make_parents();
     clear_leftovers(target_.parent_path(), prefix_beside(target_), target_, marker_);
@@ -332,19 +334,28 @@ void StagedFolder::make_staged() {
   if (stat(staged_.c_str(), &made) == 0) chmod(staged_.c_str(), (made.st_mode & 07000U) | (0777U & ~mask));
 }
 
+/// @throws std::runtime_error if a folder or a file of the user has the name of a file of the result
+void StagedFolder::check_name(const std::string& name) const {
+  if (fs::is_directory(fs::symlink_status(target_ / name))) {
+    refuse(target_ / name, "is a folder; a file is to go there");
+  }
+  if (!replaces_own_ && fs::exists(fs::symlink_status(target_ / name))) {
+    refuse(target_ / name, "monograin has not written this file and would replace it; choose another folder");
+  }
+}
+
+void StagedFolder::flush(const fs::path& path) const {
+  if (std::chrono::steady_clock::now() - begin_ > k_worth_flushing) sync_to_disk(path);
+}
+
 void StagedFolder::publish() {
   for (const std::string& name : names_in(staged_, marker_)) {
-    if (fs::is_directory(fs::symlink_status(target_ / name))) {
-      refuse(target_ / name, "is a folder; a file is to go there");
-    }
-    if (!replaces_own_ && fs::exists(fs::symlink_status(target_ / name))) {
-      refuse(target_ / name, "monograin has not written this file and would replace it; choose another folder");
-    }
-    sync_to_disk(staged_ / name);
+    check_name(name);
+    flush(staged_ / name);
   }
   write_list(staged_);
-  sync_to_disk(staged_ / k_written_files);
-  sync_to_disk(staged_);
+  flush(staged_ / k_written_files);
+  flush(staged_);
   // An existing target is never renamed over, even if empty: a process that works in it would lose its folder.
   if (fs::exists(target_) || rename(staged_.c_str(), target_.c_str()) != 0) {
     const LockedFolder one_at_a_time(target_, LOCK_EX);
@@ -353,10 +364,10 @@ void StagedFolder::publish() {
     } else {
       write_text_file(staged_ / k_moving, "");
       move_files(staged_, target_, marker_);
-      sync_to_disk(target_);
+      flush(target_);
     }
   }
-  sync_to_disk(target_.parent_path());
+  flush(target_.parent_path());
   made_parents_.clear();
   close(std::exchange(lock_, -1));
 }

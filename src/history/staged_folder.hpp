@@ -1,7 +1,9 @@
 /// Folders of results: the program replaces its own files and keeps those of the user.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,11 +29,14 @@ inline constexpr std::string_view k_written_files = ".monograin";
 /// and its destination is the target.
 class StagedFolder {
  public:
-  /// Makes the hidden folder. A target that cannot be written is thus reported before anything is computed.
+  /// Makes the hidden folder. A target to which the result cannot be written is thus reported before anything is
+  /// computed.
   /// @param marker  name of a file that every result of the kind has
-  /// @throws std::runtime_error if the target is a file, cannot be written, or holds a result of another kind or a
-  /// marker that is not by this program
-  explicit StagedFolder(const std::filesystem::path& target, std::string_view marker = k_run_marker);
+  /// @param names   other files that every result of the kind has
+  /// @throws std::runtime_error if the target is a file, cannot be written, or holds a result of another kind, or a
+  /// file or a folder of the user with one of these names
+  explicit StagedFolder(const std::filesystem::path& target, std::string_view marker = k_run_marker,
+                        std::span<const std::string_view> names = {});
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
@@ -39,7 +44,8 @@ class StagedFolder {
   /// Hidden folder to which the files are written.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return staged_; }
 
-  /// Flushes the files to the disk and puts them into the target.
+  /// Puts the files into the target. A result that took more than a second is flushed to the disk before, so that it
+  /// survives a loss of power; flushing a short run would take longer than the run.
   /// @throws std::runtime_error if a file cannot be put there, because a folder or a file of the user has its name. The
   /// target is then unchanged, unless publish() was moving files one by one.
   void publish();
@@ -47,7 +53,10 @@ class StagedFolder {
  private:
   void make_parents();
   void make_staged();
+  void check_name(const std::string& name) const;
+  void flush(const std::filesystem::path& path) const;
 
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::filesystem::path target_;
   std::string marker_;
   bool replaces_own_ = false;                        ///< the target holds an earlier result

@@ -187,6 +187,19 @@ TEST_F(Commands, AFileOfTheUserIsNotReplacedByARun) {
   EXPECT_FALSE(fs::exists(path("mine/run.json")));
 }
 
+TEST_F(Commands, AFileOfTheUserStopsAllRunsBeforeTheFirstBegins) {
+  write_text(path("small.toml"), k_small);
+  write_text(path("other.toml"), k_small);
+  fs::create_directories(path("out/other"));
+  write_text(path("out/other/events.csv"), "keep me");
+  const Outcome outcome = monograin("run small.toml other.toml -o out");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("other/events.csv: monograin has not written this file"), std::string::npos)
+      << outcome.err;
+  EXPECT_FALSE(fs::exists(path("out/small")));
+  EXPECT_EQ(text("out/other/events.csv"), "keep me");
+}
+
 TEST_F(Commands, AResultOfAnotherKindIsNotReplacedByARun) {
   write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml -o r").code, 0);
@@ -638,7 +651,9 @@ TEST_F(Commands, CalibrateWritesNothingWhereSomethingIsAtFault) {
   fs::create_directory(path("mine"));
   write_text(path("mine/fit.csv"), "keep me");
   const auto with_run = files();
-  EXPECT_EQ(monograin("calibrate fit.toml -o mine").code, 2);
+  const Outcome mine = monograin("calibrate fit.toml -o mine");
+  EXPECT_EQ(mine.code, 2);
+  EXPECT_TRUE(mine.out.empty()) << "refused before the fit";
   EXPECT_EQ(monograin("calibrate fit.toml -o measured").code, 2) << "a run is no calibration";
   EXPECT_EQ(files(), with_run);
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "history/staged_folder.hpp"
@@ -188,6 +189,8 @@ inline constexpr double k_most_missing = 0.1;
 
 /// File that marks a folder as one of a calibration.
 inline constexpr const char* k_calibration_marker = "calibration.json";
+/// Other files that every such folder has.
+inline constexpr std::array<std::string_view, 2> k_calibration_tables{"fit.csv", "fitted.toml"};
 
 /// Writes fit.csv, fitted.toml with the tables it names, calibration.json and figure.svg with its script and data; all
 /// of them or none.

@@ -291,8 +291,8 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
 
 std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder,
                               bool has_report) {
-  figure::write_whole(folder.path() / "fit.csv", csv_text(fit_table(calibration, result)));
-  figure::write_whole(folder.path() / "fitted.toml", fitted_scenario_text(calibration, result));
+  figure::write_whole(folder.path() / k_calibration_tables[0], csv_text(fit_table(calibration, result)));
+  figure::write_whole(folder.path() / k_calibration_tables[1], fitted_scenario_text(calibration, result));
   for (const auto& [name, text] : fitted_scenario_files(calibration)) {
     figure::write_whole(folder.path() / name, text);
   }
