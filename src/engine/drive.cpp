@@ -125,11 +125,13 @@ class Drive {
     log.clear();
     if (is_met) log.push_back({"until-met"});
     if (is_over) log.push_back({"step-end"});
-    hold_what_is_reached();
+    hold_what_is_reached(is_over);
   }
 
-  void hold_what_is_reached() {
-    for (std::size_t c = 0; c < held_.size(); ++c) held_[c] = ramp_after(plan_, system_, static_cast<int>(c), xi_);
+  void hold_what_is_reached(bool is_over) {
+    for (std::size_t c = 0; c < held_.size(); ++c) {
+      held_[c] = ramp_after(plan_, system_, static_cast<int>(c), xi_, is_over);
+    }
   }
 
   /// Puts the limit that stops the run into the result, with the contact class if the limit belongs to one.
@@ -168,10 +170,7 @@ class Drive {
 
   void begin_step(std::size_t step, std::vector<Event>& log) {
     plan_ = plan_step(scene_, step, held_, guard_set_, xi_, y_);
-    clock_ = {.step = step,
-              .start = clock_.time(xi_),
-              .duration = plan_.duration,
-              .number = clock_.number + (step > 0 && plan_.leg.is_first() ? 1U : 0U)};
+    clock_ = clock_.next(xi_, step, plan_.leg, plan_.duration);
     xi_ = 0.0;
     const std::size_t logged = log.size();
     system_.begin_step(plan_.ramps, y_, log);
@@ -183,7 +182,7 @@ class Drive {
   bool integrate_step(const std::vector<Event>& log) {
     xi_ = 0.0;
     guard_set_.begin_step(plan_.conditions, 0.0, y_);
-    demands_.note_begin(plan_);
+    demands_.note_begin(plan_, clock_);
     follow([this](ForwardSensitivities& s) { s.expect_held(guard_set_.held_at_begin().has_value()); });
     rows_.begin_step();
     if (const auto held = guard_set_.held_at_begin()) {
@@ -250,7 +249,7 @@ class Drive {
   void integrate_legs() {
     bool is_met = integrate();
     while (!is_met && !plan_.leg.is_last()) {
-      hold_what_is_reached();
+      hold_what_is_reached(false);
       std::vector<Event> log;
       begin_step(clock_.step + 1, log);
       guard_set_.begin_step(plan_.conditions, 0.0, y_);

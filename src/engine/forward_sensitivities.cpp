@@ -319,14 +319,13 @@ void ForwardSensitivities::start() {
 
 void ForwardSensitivities::begin_step(std::size_t step, const StepPlan& plan, std::span<const Event> log) {
   each_side([&](Number&, Side& side) {
-    const double start = side.time();
     if (step > 0) {
       for (std::size_t c = 0; c < side.held.size(); ++c) {
-        side.held[c] = ramp_after(side.plan, side.system(), static_cast<int>(c), side.xi);
+        side.held[c] = ramp_after(side.plan, side.system(), static_cast<int>(c), side.xi, plan.leg.is_first());
       }
     }
     side.plan = plan_step(side.scene, step, side.held, side.guard_set, side.xi, side.y);
-    side.clock = {.step = step, .start = start, .duration = side.plan.duration};
+    side.clock = side.clock.next(side.xi, step, side.plan.leg, side.plan.duration);
     side.xi = 0.0;
     std::vector<Event> of_side;
     side.system().begin_step(side.plan.ramps, side.y, of_side);

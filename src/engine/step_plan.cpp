@@ -53,9 +53,17 @@ Ramp ramp_of(const Step& step, int channel, const Ramp& held, HybridSystem& syst
     ramp.end = ramp.start - system.quantity(Quantity::apparent_radius, channel, xi, y);
     return ramp;
   }
-  ramp.end = step.target;
   // The value at which a condition has ended the last step has an integrator's error: a ramp to that value holds it.
-  if (guard_set.has_ended_at(*control, channel, ramp.end)) ramp.start = ramp.end;
+  if (guard_set.has_ended_at(*control, channel, step.target)) ramp.start = step.target;
+  ramp.end = std::lerp(ramp.start, step.target, step.share);
+  return ramp;
+}
+
+/// The part of a leg that a lost contact follows: none of a force below zero. Legs of a table or a sine end where their
+/// force passes zero, so that contact is made again there.
+Ramp without_pull(Ramp ramp) {
+  ramp.start = std::max(ramp.start, 0.0);
+  ramp.end = std::max(ramp.end, 0.0);
   return ramp;
 }
 
@@ -68,10 +76,14 @@ StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> h
   for (std::size_t c = 0; c < scene.channels.size(); ++c) {
     const Channel& channel = scene.channels[c];
     plan.ramps.push_back(held[c]);
+    plan.prescribed.push_back(held[c]);
     if (step >= channel.program.size()) continue;
     const Step& of_channel = channel.program[step];
     const int index = static_cast<int>(c);
-    const Ramp& ramp = plan.ramps.back() = ramp_of(of_channel, index, held[c], *scene.system, guard_set, xi, y);
+    const Ramp ramp = ramp_of(of_channel, index, held[c], *scene.system, guard_set, xi, y);
+    plan.prescribed.back() = ramp;
+    const bool is_lost = ramp.control == Control::force && ramp.start < 0.0 && scene.system->is_open(index);
+    plan.ramps.back() = is_lost ? without_pull(ramp) : ramp;
     if (of_channel.kind == Step::Kind::detach) plan.detaching.push_back(index);
     for (const Until& until : of_channel.until) {
       if (until.is_event())
@@ -96,7 +108,11 @@ StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> h
   return plan;
 }
 
-Ramp ramp_after(const StepPlan& plan, const HybridSystem& system, int channel, double xi) {
+Ramp ramp_after(const StepPlan& plan, const HybridSystem& system, int channel, double xi, bool is_over) {
+  if (!is_over) {
+    const Ramp& prescribed = plan.prescribed[static_cast<std::size_t>(channel)];
+    return {prescribed.end, prescribed.end, prescribed.control};
+  }
   const Ramp& ramp = plan.ramps[static_cast<std::size_t>(channel)];
   const bool is_lost = ramp.control == Control::force && system.is_open(channel);
   const double value = is_lost ? 0.0 : ramp.value(xi);

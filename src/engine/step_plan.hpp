@@ -19,8 +19,9 @@ struct Stop {
 };
 
 struct StepPlan {
-  std::vector<Ramp> ramps;
-  double duration = -1.0;  ///< [s]; negative if no channel gives one
+  std::vector<Ramp> ramps;       ///< of the walls; a contact that is lost bears no force below zero
+  std::vector<Ramp> prescribed;  ///< by the program
+  double duration = -1.0;        ///< [s]; negative if no channel gives one
   std::vector<Condition> conditions;
   std::vector<std::string> ending_events;
   Leg leg{};                   ///< place of the ramps in their step
@@ -35,7 +36,8 @@ struct StepPlan {
 
 /// Ramp that a channel keeps after a step that ended at xi, if the next step says nothing: the value reached at xi,
 /// held. A force-controlled wall whose contact is open keeps a force of zero.
-[[nodiscard]] Ramp ramp_after(const StepPlan& plan, const HybridSystem& system, int channel, double xi);
+/// @param is_over  false: the ramp was a leg, after which its step goes on from the prescribed value
+[[nodiscard]] Ramp ramp_after(const StepPlan& plan, const HybridSystem& system, int channel, double xi, bool is_over);
 
 /// A condition in the words of the scenario, e.g. "until axial.force = 1000 N".
 [[nodiscard]] std::string condition_text(const Scene& scene, const Condition& condition);

@@ -8,6 +8,13 @@
 #include "system/resolution.hpp"
 
 namespace monograin {
+namespace {
+
+/// Relative difference of two values that count as equal where a table begins: what a run computes has the error of its
+/// integrator.
+constexpr double k_same_start = 1e-6;
+
+}  // namespace
 
 void UnmetDemands::begin_step(double xi) {
   std::ranges::fill(open_since_, std::nullopt);
@@ -22,8 +29,10 @@ void UnmetDemands::note_open(double xi) {
   }
 }
 
-void UnmetDemands::note_begin(const StepPlan& plan) {
+void UnmetDemands::note_begin(const StepPlan& plan, const StepClock& clock) {
   if (!plan.leg.is_first()) return;
+  close_step();
+  note_starts(plan, clock);
   at_begin_.clear();
   for (std::size_t i = 0; i < plan.conditions.size(); ++i) at_begin_.push_back(guard_set_.value_at_begin(i));
 }
@@ -49,16 +58,52 @@ void UnmetDemands::note_conditions(const StepPlan& plan, const StepClock& clock,
   }
 }
 
+void UnmetDemands::note_starts(const StepPlan& plan, const StepClock& clock) {
+  for (std::size_t c = 0; c < scene_.channels.size(); ++c) {
+    const Channel& channel = scene_.channels[c];
+    if (clock.step >= channel.program.size() || !channel.program[clock.step].start) continue;
+    const double start = *channel.program[clock.step].start;
+    const Ramp& ramp = plan.prescribed[c];
+    const double gap = start - ramp.start;
+    if (std::abs(gap) <= k_same_start * std::max({std::abs(start), std::abs(ramp.start), std::abs(ramp.end)})) continue;
+    const Quantity quantity = ramp.control == Control::force ? Quantity::force : Quantity::displacement;
+    notes_.add(clock.number,
+               fmt::format("the table or sine of '{}' does not begin where the wall is: a ramp leads from there to its "
+                           "next point",
+                           channel.name),
+               fmt::format(" (it begins at {}, the wall is at {}, a gap of {})", with_unit(start, quantity),
+                           with_unit(ramp.start, quantity), with_unit(gap, quantity)));
+  }
+}
+
 void UnmetDemands::note_forces(const StepPlan& plan, const StepClock& clock, double xi) {
   for (std::size_t c = 0; c < open_since_.size(); ++c) {
-    const Ramp& ramp = plan.ramps[c];
+    const Ramp& ramp = plan.prescribed[c];
     const double force = ramp.value(xi);
     const bool was_open = open_since_[c] && xi - *open_since_[c] > k_same_instant;
     if (ramp.control != Control::force || force == 0.0 || !was_open) continue;
-    notes_.add(clock.number,
-               fmt::format("no contact bears the force that is prescribed to '{}'", scene_.channels[c].name),
-               fmt::format(" ({:.6g} N at its end; open since t = {:.9g} s)", force, clock.time(*open_since_[c])));
+    std::optional<UnborneForce>& unborne = unborne_[c];
+    if (!unborne) unborne = {.step = clock.number, .open_since = clock.time(*open_since_[c])};
+    if (std::abs(force) <= std::abs(unborne->force)) continue;
+    unborne->force = force;
+    unborne->time = clock.time(xi);
   }
+}
+
+void UnmetDemands::close_step() {
+  for (std::size_t c = 0; c < unborne_.size(); ++c) {
+    if (!unborne_[c]) continue;
+    notes_.add(unborne_[c]->step,
+               fmt::format("no contact bears the force that is prescribed to '{}'", scene_.channels[c].name),
+               fmt::format(" ({:.6g} N at t = {:.9g} s; open since t = {:.9g} s)", unborne_[c]->force,
+                           unborne_[c]->time, unborne_[c]->open_since));
+    unborne_[c].reset();
+  }
+}
+
+std::vector<std::string> UnmetDemands::texts() {
+  close_step();
+  return notes_.texts();
 }
 
 }  // namespace monograin

@@ -16,28 +16,40 @@ namespace monograin {
 class UnmetDemands {
  public:
   UnmetDemands(const Scene& scene, const GuardSet& guard_set)
-      : scene_(scene), guard_set_(guard_set), open_since_(scene.channels.size()) {}
+      : scene_(scene), guard_set_(guard_set), open_since_(scene.channels.size()), unborne_(scene.channels.size()) {}
 
   void begin_step(double xi);
   /// Records since when in this step each channel's contact has been open.
   void note_open(double xi);
 
-  /// Keeps the values of the conditions' quantities where the first leg of a step begins.
-  void note_begin(const StepPlan& plan);
+  /// A leg begins. If it is the first one of its step, keeps the values of the conditions' quantities there, and notes
+  /// tables and sines that do not begin where their walls are.
+  void note_begin(const StepPlan& plan, const StepClock& clock);
   /// A condition holds where the step begins, and ends it there.
   void note_held_at_begin(const Condition& condition, const StepClock& clock);
   /// A step has ended by none of its conditions.
   void note_conditions(const StepPlan& plan, const StepClock& clock, double xi, std::span<const double> y);
-  /// A step has ended. Notes the forces that no contact bears then, because it opened before.
+  /// A leg has ended. Notes the forces that no contact bears then, because it opened before.
   void note_forces(const StepPlan& plan, const StepClock& clock, double xi);
 
-  [[nodiscard]] std::vector<std::string> texts() const { return notes_.texts(); }
+  [[nodiscard]] std::vector<std::string> texts();
 
  private:
+  /// The largest force of a step that no contact bears.
+  struct UnborneForce {
+    std::size_t step = 1;     ///< number of the step
+    double force = 0.0;       ///< [N]
+    double time = 0.0;        ///< [s]
+    double open_since = 0.0;  ///< [s]
+  };
+  void close_step();
+  void note_starts(const StepPlan& plan, const StepClock& clock);
+
   const Scene& scene_;
   const GuardSet& guard_set_;
-  std::vector<std::optional<double>> open_since_;  ///< step coordinate, for each channel; empty while it is closed
-  std::vector<double> at_begin_;                   ///< of the step, by condition
+  std::vector<std::optional<double>> open_since_;     ///< step coordinate, for each channel; empty while it is closed
+  std::vector<std::optional<UnborneForce>> unborne_;  ///< of the present step, for each channel
+  std::vector<double> at_begin_;                      ///< of the step, by condition
   ProgramNotes notes_;
 };
 

@@ -29,15 +29,32 @@ struct Point {
   bool is_corner = true;
 };
 
-/// Ramps from point to point. The first point is that of time 0, without a value where the course begins with a ramp.
-std::vector<Step> ramps_through(const std::vector<Point>& points, std::optional<double> start) {
+/// Adds points where the value passes zero upwards: a contact that is lost under a negative force is made again there.
+std::vector<Point> with_zeros(const std::vector<Point>& points, std::optional<double> start) {
+  std::vector<Point> result;
+  Point last{.value = start.value_or(0.0)};
+  for (const Point& point : points) {
+    if (last.value < 0.0 && point.value > 0.0) {
+      const double time = std::lerp(last.time, point.time, last.value / (last.value - point.value));
+      if (time > last.time && time < point.time) result.push_back({.time = time, .value = 0.0, .is_corner = false});
+    }
+    result.push_back(last = point);
+  }
+  return result;
+}
+
+/// Ramps from point to point.
+/// @param start  value at time 0; none where the course begins with a ramp from the present value
+std::vector<Step> ramps_through(std::vector<Point> points, std::optional<double> start, Control control) {
+  if (control == Control::force) points = with_zeros(points, start);
+  const double end = points.empty() ? 0.0 : points.back().time;
   std::vector<Step> ramps;
   Point last;
   for (const Point& point : points) {
     Step& ramp = ramps.emplace_back();
     ramp.target = point.value;
     ramp.duration = point.time - last.time;
-    ramp.leg = {last.time / points.back().time, point.time / points.back().time, last.is_corner};
+    ramp.leg = {last.time / end, point.time / end, last.is_corner, last.time, point.time};
     last = point;
   }
   if (!ramps.empty()) ramps.front().start = start;
@@ -53,7 +70,7 @@ double sine_at(int k) {
   return quarter < 2 ? sine : 0.0 - sine;
 }
 
-std::vector<Step> read_sine(Reading& reading, const Section& course, const CourseForm& form) {
+std::vector<Step> read_sine(Reading& reading, const Section& course, const CourseForm& form, Control control) {
   if (!course.has_table("sine")) return {};
   const Section sine(reading, course.table("sine", "sine"), form.in_sine);
   const auto mean = sine.number("mean");
@@ -72,14 +89,14 @@ std::vector<Step> read_sine(Reading& reading, const Section& course, const Cours
     const bool is_turn = k % (2 * k_ramps_per_quarter) == k_ramps_per_quarter;
     points.push_back({k / (k_ramps_per_cycle * *frequency), *mean + *amplitude * sine_at(k), is_turn});
   }
-  return ramps_through(points, *mean);
+  return ramps_through(std::move(points), *mean, control);
 }
 
 /// Reads a table of a file.
 class TableReader {
  public:
-  TableReader(Reading& reading, const Section& course, const KeySpec& value)
-      : reading_(reading), course_(course), value_(value), name_(course.text("table")) {}
+  TableReader(Reading& reading, const Section& course, const KeySpec& value, Control control)
+      : reading_(reading), course_(course), value_(value), control_(control), name_(course.text("table")) {}
 
   std::vector<Step> read(FileTexts& files) {
     const FileText file = text_of_file(reading_, name_, k_largest_text);
@@ -101,7 +118,7 @@ class TableReader {
       start = points.front().value;
       points.erase(points.begin());
     }
-    if (!points.empty()) return ramps_through(points, start);
+    if (!points.empty()) return ramps_through(std::move(points), start, control_);
     fault(0, 0, "the table ends where it begins; expected a later row");
     return {};
   }
@@ -169,6 +186,7 @@ class TableReader {
   Reading& reading_;
   const Section& course_;
   const KeySpec& value_;
+  Control control_;
   std::string name_;
   std::string origin_ = (reading_.folder / name_).string();
   MeasuredData data_;
@@ -181,14 +199,15 @@ std::vector<Step> read_course(Reading& reading, const Section& step, const StepF
   const std::string label(form.key);
   const Section::Origin origin = step.table(form.key, label);
   const CourseForm& course = *form.course;
+  const Control control = control_of(*form.kind).value_or(Control::displacement);
   std::vector<std::string_view> names = names_of(course.table);
   names.emplace_back("sine");
   const auto is_sine = [&](const auto& entry) { return nearest_word(entry.first.str(), names) == "sine"; };
   if (std::ranges::any_of(*origin.table, is_sine))
-    return read_sine(reading, Section(reading, origin, course.sine, course.foreign_to_sine), course);
+    return read_sine(reading, Section(reading, origin, course.sine, course.foreign_to_sine), course, control);
   const Section table(reading, origin, course.table);
   if (table.text("table").empty() || table.text("time").empty() || table.text("value").empty()) return {};
-  return TableReader(reading, table, form.keys.front()).read(files);
+  return TableReader(reading, table, form.keys.front(), control).read(files);
 }
 
 }  // namespace monograin

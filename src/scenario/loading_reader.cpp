@@ -9,6 +9,7 @@
 
 #include "scenario/program_reader.hpp"
 #include "scenario/program_rules.hpp"
+#include "scenario/shared_times.hpp"
 #include "scenario/words.hpp"
 #include "system/resolution.hpp"
 
@@ -70,6 +71,7 @@ class LoadingReader {
     }
     // With faults in the programs, differences between them could be mere consequences.
     if (reading_.faults.size() == faults_before_) check_programs(programs_of_walls(), reading_.faults);
+    if (reading_.faults.size() == faults_before_) share_times_of_walls();
     return std::move(loading_);
   }
 
@@ -181,6 +183,23 @@ class LoadingReader {
       if (!wall.is_fixed && !steps.empty()) programs.push_back({wall.name, wall.where, wall.gap, steps});
     }
     return programs;
+  }
+
+  void share_times_of_walls() {
+    std::vector<std::vector<Step>*> programs;
+    if (!loading_.steps.empty()) programs.push_back(&loading_.steps);
+    for (WallSpec& wall : loading_.walls) {
+      if (!wall.steps.empty()) programs.push_back(&wall.steps);
+    }
+    if (programs.size() < 2) return;
+    share_times(programs);
+    std::size_t ramps = 0;
+    for (const std::vector<Step>* program : programs) ramps += program->size();
+    if (ramps <= static_cast<std::size_t>(k_most_steps)) return;
+    reading_.faults.add(section_.key_place("wall"),
+                        fmt::format("the programs of the walls have {} ramps, each divided at the times of all tables "
+                                    "and sines; expected at most {}",
+                                    ramps, k_most_steps));
   }
 
   Reading& reading_;

@@ -27,7 +27,7 @@ std::optional<double> duration_of(const std::vector<Step>& program, std::size_t 
   if (step.duration || !step.rate) return step.duration;
   // A ramp with a rate begins at the target of the step before, if that step reaches its target for certain.
   if (index == 0 || program[index - 1].kind != step.kind || !program[index - 1].until.empty()) return std::nullopt;
-  if (!control_of(step.kind)) return std::nullopt;
+  if (!control_of(step.kind) || !step.leg.is_whole()) return std::nullopt;
   return std::abs(step.target - program[index - 1].target) / *step.rate;
 }
 

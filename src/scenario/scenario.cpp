@@ -184,6 +184,16 @@ std::size_t count_steps(std::span<const Step> program) noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(program, [](const Step& step) { return step.leg.is_first(); }));
 }
 
+std::vector<std::span<const Step>> steps_with_legs(std::span<const Step> program) {
+  std::vector<std::span<const Step>> steps;
+  for (std::size_t first = 0, k = 0; k < program.size(); ++k) {
+    if (!program[k].leg.is_last()) continue;
+    steps.push_back(program.subspan(first, k + 1 - first));
+    first = k + 1;
+  }
+  return steps;
+}
+
 std::optional<Control> control_of(Step::Kind kind) noexcept {
   switch (kind) {
     case Step::Kind::displacement:

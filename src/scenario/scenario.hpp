@@ -21,12 +21,15 @@ namespace monograin {
 
 /// Place of a ramp in a step that follows a table or a sine, which is written out as ramps. Any other step has one leg.
 struct Leg {
-  double begin = 0.0;     ///< share of the step's time at which the ramp begins
-  double end = 1.0;       ///< and ends
-  bool is_corner = true;  ///< the program has a corner where the ramp begins; false within a curve
+  double begin = 0.0;       ///< share of the step's time at which the ramp begins
+  double end = 1.0;         ///< and ends
+  bool is_corner = true;    ///< the program has a corner where the ramp begins; false within a curve
+  double begin_time = 0.0;  ///< [s] from the beginning of the step; unused where the step has one leg
+  double end_time = 0.0;
 
   [[nodiscard]] bool is_first() const noexcept { return begin == 0.0; }
   [[nodiscard]] bool is_last() const noexcept { return end == 1.0; }
+  [[nodiscard]] bool is_whole() const noexcept { return is_first() && is_last(); }
   [[nodiscard]] bool operator==(const Leg&) const = default;
 };
 
@@ -48,10 +51,13 @@ struct Step {
   std::optional<Lateral> lateral{};  ///< of a material point; none: the lateral quantity keeps its value
   Leg leg{};
   std::optional<double> start{};  ///< value at which the ramp is to begin [SI]; none: the present one
+  double share = 1.0;             ///< part of the distance to the target that the ramp covers
 };
 
 /// Number of steps of a program, all legs of a step counted as one.
 [[nodiscard]] std::size_t count_steps(std::span<const Step> program) noexcept;
+/// The steps of a program, each with all its legs.
+[[nodiscard]] std::vector<std::span<const Step>> steps_with_legs(std::span<const Step> program);
 
 /// Quantity that a ramp controls; none for a hold or a withdrawal.
 [[nodiscard]] std::optional<Control> control_of(Step::Kind kind) noexcept;

@@ -121,7 +121,7 @@ std::size_t count_to_pull(const Model& model, const std::vector<Channel>& channe
     for (const Channel& channel : channels) {
       if (k >= channel.program.size()) continue;
       const Step& step = channel.program[k];
-      pulls = pulls || (step.kind == Step::Kind::force && step.target < 0.0);
+      pulls = pulls || (step.kind == Step::Kind::force && step.target < 0.0 && step.share == 1.0);
       may_end_before = may_end_before || !step.until.empty();
     }
     if (pulls && !may_end_before) return k + 1;

@@ -12,7 +12,7 @@ namespace {
 
 bool same_step(const Step& a, const Step& b) {
   return a.kind == b.kind && a.target == b.target && a.duration == b.duration && a.rate == b.rate &&
-         a.until == b.until && a.leg == b.leg;
+         a.until == b.until && a.leg == b.leg && a.share == b.share;
 }
 
 /// Colours of walls: those with the same gap and the same program have the same colour.

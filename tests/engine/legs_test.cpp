@@ -19,7 +19,7 @@ std::vector<Step> course(const std::vector<double>& displacements, bool has_corn
   for (const double displacement : displacements) {
     const auto k = static_cast<double>(steps.size());
     steps.push_back(ramp(displacement, 1.0 / count));
-    steps.back().leg = {k / count, (k + 1.0) / count, has_corners || k == 0.0};
+    steps.back().leg = {k / count, (k + 1.0) / count, has_corners || k == 0.0, k / count, (k + 1.0) / count};
   }
   return steps;
 }
@@ -123,6 +123,98 @@ TEST(Legs, HaveCornersWhereAnyWallHasOneWhicheverIsNamedFirst) {
   };
   EXPECT_EQ(rows_of(with_corners, without), rows_of(without, with_corners));
   EXPECT_GT(rows_of(without, with_corners).size(), rows_of(without, without).size());
+}
+
+TEST(Legs, HaveTimesWithoutSums) {
+  std::vector<Step> sine;
+  for (int k = 0; k < 704; ++k) {
+    sine.push_back(ramp(0.1 + 1e-4 * k, (k + 1) / 640.0 - k / 640.0));
+    sine.back().leg = {k / 704.0, (k + 1) / 704.0, k == 0, k / 640.0, (k + 1) / 640.0};
+  }
+  EXPECT_EQ(run(hertz_pair(sine, 2)).last("time"), 1.1);
+}
+
+// --- forces of tables, from row to row
+
+/// A step of 3 s through forces at 1, 2, 2.25 and 3 s; the third one is zero.
+std::vector<Step> forces_below_zero() {
+  const std::vector<std::pair<double, double>> rows{{1.0, 0.010}, {2.0, -0.004}, {2.25, 0.0}, {3.0, 0.012}};
+  std::vector<Step> steps;
+  double begin = 0.0;
+  for (const auto& [time, force] : rows) {
+    steps.push_back(force_ramp(force, time - begin));
+    steps.back().leg = {begin / 3.0, time / 3.0, begin != 2.25, begin, time};
+    begin = time;
+  }
+  return steps;
+}
+
+TEST(ForcesOfTables, AreFollowedAfterALostContact) {
+  const std::vector<double> times{1.5, 1.9, 2.1, 2.5, 2.9};
+  const std::vector<double> forces{0.003, 0.0, 0.0, 0.004, 0.0104};
+  for (CheckedScenario scenario : {hertz_scenario(Configuration::simple, forces_below_zero()),
+                                   mdr_scenario(Configuration::simple, 50.0, 0.3, forces_below_zero())}) {
+    scenario.output.times = times;
+    for (const char* integrator : k_integrators) {
+      const TestRun result = run(scenario, integrator);
+      ASSERT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+      const std::vector<double> found = result.outputs("axial.force");
+      ASSERT_EQ(found.size(), times.size() + 1);
+      for (std::size_t k = 0; k < times.size(); ++k) {
+        EXPECT_NEAR(found[k + 1], forces[k], 1e-9) << scenario.model << ", " << integrator << ", t = " << times[k];
+      }
+      EXPECT_NEAR(result.time_of("contact-lost"), 1.0 + 10.0 / 14.0, 1e-9);
+      EXPECT_NEAR(result.time_of(scenario.model == "mdr" ? "dent-touched" : "contact-made"), 2.25, 1e-9);
+    }
+  }
+}
+
+TEST(ForcesOfTables, AreNotBorneBelowZeroAsAWarningSays) {
+  const TestRun result = run(hertz_scenario(Configuration::simple, forces_below_zero()));
+  ASSERT_EQ(result.record.warnings.size(), 1U);
+  EXPECT_EQ(result.record.warnings[0],
+            "step 1: no contact bears the force that is prescribed to 'axial' (-0.004 N at t = 2 s; open since t = "
+            "1.71428571 s)");
+}
+
+TEST(ForcesOfTables, EndWithTheStepThatAConditionEnds) {
+  std::vector<Step> steps = forces_below_zero();
+  for (Step& step : steps) step.until = {{.event = "contact-lost"}};
+  // A plain ramp starts from the present force, zero.
+  const TestRun result = run(hertz_pair(followed_by(steps, force_ramp(0.01)), 4));
+  EXPECT_NEAR(result.last("time"), 2.0 + 10.0 / 14.0, 1e-9);
+  EXPECT_NEAR(result.outputs("axial.force")[5], 0.0025, 1e-12);
+}
+
+// --- walls with times of their own
+
+TEST(Legs, OfARampBesideATableGiveTheHistoryOfTheRamp) {
+  const auto beside = [](std::vector<Step> other) {
+    return run(between(hertz_pair({}, 6), {wall("a", {0.0, 0.0, 1.0}, course({0.1, 0.2, 0.05})),
+                                           wall("b", {0.0, 0.0, -1.0}, std::move(other))}));
+  };
+  std::vector<Step> divided = course({0.3, 0.3, 0.3});
+  for (std::size_t k = 0; k < 3; ++k) divided[k].share = 1.0 / (3.0 - static_cast<double>(k));
+  const std::vector<double> found = beside(divided).outputs("b.displacement");
+  ASSERT_EQ(found.size(), 7U);
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(found[k], 0.05 * static_cast<double>(k), 1e-15);
+}
+
+// --- beginnings
+
+TEST(Tables, ThatDoNotBeginWhereTheWallIsGiveAWarning) {
+  std::vector<Step> table = course({0.1, 0.2});
+  table.front().start = 0.0;
+  std::vector<Step> steps{force_ramp(0.001)};
+  steps.insert(steps.end(), table.begin(), table.end());
+  const auto warnings = run(hertz_pair(steps, 2)).record.warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(
+      warnings[0].starts_with("step 2: the table or sine of 'axial' does not begin where the wall is: a ramp "
+                              "leads from there to its next point (it begins at 0 m, the wall is at "))
+      << warnings[0];
+  steps[1].start = run(hertz_pair({force_ramp(0.001)}, 1)).last("axial.displacement") * (1.0 + 1e-9);
+  EXPECT_TRUE(run(hertz_pair(steps, 2)).record.warnings.empty());
 }
 
 TEST(Conditions, AskTheWallThatTheyName) {

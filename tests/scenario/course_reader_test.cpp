@@ -57,7 +57,7 @@ TEST(Table, IsWrittenOutAsRampsFromRowToRow) {
   EXPECT_DOUBLE_EQ(steps[2].target, 0.5e-3);
   EXPECT_EQ(steps[0].duration, 1.0);
   EXPECT_EQ(steps[1].duration, 2.0);
-  EXPECT_EQ(steps[1].leg, (Leg{0.25, 0.75, true}));
+  EXPECT_EQ(steps[1].leg, (Leg{0.25, 0.75, true, 1.0, 3.0}));
   EXPECT_TRUE(steps[0].leg.is_first());
   EXPECT_TRUE(steps[2].leg.is_last());
   EXPECT_EQ(count_steps(steps), 1U);
@@ -92,6 +92,18 @@ TEST(Table, OfForcesIsReadAlike) {
   EXPECT_DOUBLE_EQ(*steps[1].duration, 0.4);
   EXPECT_EQ(steps[0].until.size(), 1U);
   EXPECT_EQ(steps[1].until.size(), 1U);
+}
+
+TEST(Table, OfForcesEndsARampWhereItComesBackToZero) {
+  const std::vector<Step> steps =
+      steps_of(with_loading("[loading]\nconfiguration = \"simple\"\nsteps = [{ force = { table = \"path.csv\", time = "
+                            "\"t\", value = \"F\" } }]\n"),
+               "t[s],F[N]\n0,0\n1,10\n2,-4\n3,12\n");
+  ASSERT_EQ(steps.size(), 4U);
+  EXPECT_EQ(steps[2].target, 0.0);
+  EXPECT_EQ(steps[2].leg.end_time, 2.25);
+  EXPECT_FALSE(steps[3].leg.is_corner);
+  EXPECT_EQ(steps[3].leg, (Leg{0.75, 1.0, false, 2.25, 3.0}));
 }
 
 TEST(Table, IsRecordedWithTheScenario) {
@@ -185,6 +197,13 @@ TEST(Sine, HasCornersWhereItTurns) {
   EXPECT_EQ(std::ranges::count_if(steps, is_corner), 2 + 2 * 3);
   EXPECT_TRUE(steps[1 + 16].leg.is_corner);
   EXPECT_FALSE(steps[1 + 32].leg.is_corner);
+}
+
+TEST(Sine, HasTimesWithoutSums) {
+  const std::vector<Step> steps =
+      steps_of(with_displacement("{ sine = { mean = 0, amplitude = 1e-4, frequency = 10, cycles = 11 } }"));
+  EXPECT_EQ(steps.back().leg.end_time, 1.1);
+  EXPECT_EQ(steps[64 * 7 - 1].leg.end_time, 0.7);
 }
 
 TEST(Sine, BeginsAtItsMean) {

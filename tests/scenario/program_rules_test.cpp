@@ -68,13 +68,16 @@ TEST(Programs, DoNotWithdrawOneWallBesideAnotherThatHasADuration) {
             "so expected equal rates"});
 }
 
-TEST(Programs, OfASineAndOfARampAreNotDividedAlike) {
-  const std::string sine = "{ displacement = { sine = { mean = 0, amplitude = 1e-4, frequency = 1, cycles = 1 } } }";
-  EXPECT_EQ(
-      faults_of(two_walls(sine, k_hold)),
-      Lines{"die.toml:19:10: step 1 of wall 'b' and that of wall 'a' do not have the same times: one of them follows "
-            "a table or a sine; expected tables of the same times, or one program for both walls"});
-  EXPECT_EQ(faults_of(two_walls(sine, sine)), Lines{});
+TEST(Programs, OfASineAndOfAHoldNeedEqualDurations) {
+  const std::string sine = "{ displacement = { sine = { mean = 0, amplitude = 1e-4, frequency = 1, cycles = 2 } } }";
+  EXPECT_EQ(faults_of(two_walls(sine, k_hold)),
+            Lines{"die.toml:19:10: step 1 of wall 'b' takes 1 s where that of wall 'a' takes 2 s; steps end together, "
+                  "so expected equal durations"});
+  EXPECT_EQ(faults_of(two_walls(sine, "{ hold = true, duration = \"2 s\" }")), Lines{});
+  EXPECT_EQ(faults_of(two_walls(sine, "{ detach = true, rate = 1 }")),
+            Lines{"die.toml:19:10: in step 1 wall 'b' is withdrawn until its contact is lost (detach) where wall 'a' "
+                  "moves for 2 s; steps end together, so expected detach for both, or a displacement with a duration "
+                  "and until = { event = \"contact-lost\" } in its place"});
 }
 
 }  // namespace

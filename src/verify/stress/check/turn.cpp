@@ -110,7 +110,7 @@ std::optional<double> known_duration(const std::vector<WallSpec>& walls, std::si
     if (wall.is_fixed) continue;
     if (step >= wall.steps.size()) return std::nullopt;
     const Step& own = wall.steps[step];
-    const bool is_known = own.duration && own.until.empty() && own.kind != Step::Kind::detach;
+    const bool is_known = own.duration && own.until.empty() && own.share == 1.0 && own.kind != Step::Kind::detach;
     if (!is_known || (duration && *duration != *own.duration)) return std::nullopt;
     duration = own.duration;
   }

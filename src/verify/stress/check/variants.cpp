@@ -142,7 +142,7 @@ bool halve(const std::optional<Target>& start, Step::Kind kind, double& target) 
 std::optional<Step> first_half(const CheckedScenario& scenario, const std::vector<Step>& steps, std::size_t index,
                                double gap) {
   Step half = steps[index];
-  if (!half.until.empty() || half.kind == Step::Kind::detach) return {};
+  if (!half.until.empty() || half.kind == Step::Kind::detach || !half.leg.is_whole()) return {};
   const Start start = start_of(scenario, steps, index, rest_of(scenario, steps.front(), gap));
   if (control_of(half.kind) && !halve(start.first, half.kind, half.target)) return {};
   if (half.lateral && !halve(start.lateral, half.lateral->kind, half.lateral->target)) return {};
@@ -157,7 +157,10 @@ void move_out(WallSpec& wall, double distance, const std::vector<Step>& common) 
   if (wall.is_fixed) return;
   if (wall.steps.empty()) wall.steps = common;
   for (Step& step : wall.steps) {
-    if (step.kind == Step::Kind::displacement) step.target -= distance;
+    if (step.kind == Step::Kind::displacement) {
+      step.target -= distance;
+      if (step.start) *step.start -= distance;
+    }
     for (Until& until : step.until) {
       if (until.is_of(Quantity::displacement)) until.value -= distance;
     }
@@ -195,6 +198,8 @@ CheckedScenario slower(CheckedScenario scenario, double factor) {
   for_each_program(scenario, [&](std::vector<Step>& steps, double) {
     for (Step& step : steps) {
       if (step.duration) *step.duration *= factor;
+      step.leg.begin_time *= factor;
+      step.leg.end_time *= factor;
       if (step.rate) *step.rate /= factor;
     }
   });
@@ -211,6 +216,7 @@ CheckedScenario magnified(CheckedScenario scenario, const Magnification& by) {
   for_each_program(scenario, [&](std::vector<Step>& steps, double) {
     for (Step& step : steps) {
       step.target *= factor_of(step.kind, by);
+      if (step.start) *step.start *= factor_of(step.kind, by);
       if (step.rate) *step.rate *= factor_of(step.kind, by);
       if (step.lateral) step.lateral->target *= factor_of(step.lateral->kind, by);
       for (Until& until : step.until) until.value *= factor_of(until, by);
