@@ -125,7 +125,12 @@ class TableReader {
 
  private:
   [[nodiscard]] ColumnRequest request(std::string_view key) const {
-    return {course_.text(key), course_.value_place(key), fmt::format("{} = \"{}\"", key, shown(course_.text(key)))};
+    const std::optional<double> number = course_.column_number(key);
+    if (!number) {
+      const std::string name = course_.text(key);
+      return {name, course_.value_place(key), fmt::format("{} = \"{}\"", key, shown(name))};
+    }
+    return {{}, course_.value_place(key), fmt::format("{} = {}", key, *number), static_cast<std::size_t>(*number)};
   }
 
   std::vector<Step> fault_of_name(const std::string& problem) {
@@ -206,7 +211,10 @@ std::vector<Step> read_course(Reading& reading, const Section& step, const StepF
   if (std::ranges::any_of(*origin.table, is_sine))
     return read_sine(reading, Section(reading, origin, course.sine, course.foreign_to_sine), course, control);
   const Section table(reading, origin, course.table);
-  if (table.text("table").empty() || table.text("time").empty() || table.text("value").empty()) return {};
+  const auto names_column = [&](std::string_view key) {
+    return table.column_number(key).has_value() || !table.text(key).empty();
+  };
+  if (table.text("table").empty() || !names_column("time") || !names_column("value")) return {};
   return TableReader(reading, table, form.keys.front(), control).read(files);
 }
 

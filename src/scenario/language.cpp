@@ -355,6 +355,13 @@ KeySpec mark_key(string_view name, string_view meaning) {
   return {.name = name, .meaning = meaning, .kind = Kind::mark, .is_required = true, .example = "true"};
 }
 
+/// Column of a table of numbers.
+KeySpec column_key(string_view name, string_view meaning, std::string example) {
+  KeySpec key = required(key_of(Kind::column, name, meaning, std::move(example)));
+  key.range = {.lower = 1.0, .upper = k_most_columns};
+  return key;
+}
+
 /// Tables that may stand for a target: values over time from a file, or a sine.
 CourseForm course_form(const KeySpec& target, string_view column) {
   const auto value_key = [&](string_view name, string_view meaning, Range range) {
@@ -370,8 +377,9 @@ CourseForm course_form(const KeySpec& target, string_view column) {
   form.table = {
       required(key_of(Kind::file, "table", "table of values over time; the value between two rows is linear in time",
                       "\"file.csv\"")),
-      required(key_of(Kind::text, "time", "column of times from the beginning of the step", "\"t[s]\"")),
-      required(key_of(Kind::text, "value", "column of values", fmt::format("\"{}\"", column))),
+      column_key("time", "column of times from the beginning of the step: its heading, or its number from 1",
+                 "\"t[s]\""),
+      column_key("value", "column of values: its heading, or its number from 1", fmt::format("\"{}\"", column)),
   };
   form.sine = {{.name = "sine",
                 .meaning = "a sine that begins at its mean",

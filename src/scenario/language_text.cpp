@@ -26,6 +26,7 @@ std::string example_of(const KeySpec& spec) {
     case Kind::identifier:
     case Kind::mark:
     case Kind::file:
+    case Kind::column:
     case Kind::pair:
     case Kind::instants:
     case Kind::direction:
@@ -54,6 +55,8 @@ std::string expectation(const KeySpec& spec) {
       return fmt::format("a text in quotes, for example {}", example_of(spec));
     case Kind::file:
       return fmt::format("the name of a file in quotes, for example {}", example_of(spec));
+    case Kind::column:
+      return fmt::format("the heading of a column in quotes, for example {}, or its number from 1", example_of(spec));
     case Kind::identifier:
       return fmt::format("a name of letters, digits, '_' and '-' that begins with a letter, for example {}",
                          example_of(spec));

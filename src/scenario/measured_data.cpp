@@ -10,6 +10,7 @@
 
 #include "scenario/cells.hpp"
 #include "scenario/text_encoding.hpp"
+#include "scenario/units.hpp"
 #include "scenario/words.hpp"
 
 namespace monograin {
@@ -24,8 +25,15 @@ bool is_missing(std::string_view text) {
   return std::ranges::find(k_missing, word) != k_missing.end();
 }
 
+/// True for a time of day or a duration such as "00:01:30".
+bool is_clock_time(std::string_view text) {
+  const auto is_part_of_it = [](char c) { return (c >= '0' && c <= '9') || c == ':' || c == '.' || c == ','; };
+  return text.find(':') != std::string_view::npos && begins_a_number(text) && std::ranges::all_of(text, is_part_of_it);
+}
+
 /// Advice on a cell that is no number: its likely meaning, and a remedy. Empty if the meaning is unclear.
 std::string advice_for(std::string_view text, char decimal) {
+  if (is_clock_time(text)) return "; clock times are not understood, expected times in one unit, such as seconds";
   const char other = decimal == '.' ? ',' : '.';
   if (text.find(other) == std::string_view::npos) return {};
   if (text.find(decimal) != std::string_view::npos)
@@ -76,7 +84,7 @@ class DataParser {
       line_ = data_.layout.first_line;
       return fault(1,
                    "a number where a row of headings is expected, for example displacement[m],force[N]; or give the "
-                   "columns by their numbers, from 1");
+                   "columns by their numbers, from 1, without quotes");
     }
     if (data_.layout.splits_decimals) {
       line_ = data_.layout.first_line;

@@ -107,6 +107,8 @@ json kind_schema(const KeySpec& spec, const json& content) {
       return {{"type", "string"}};
     case Kind::file:
       return {{"type", "string"}, {"minLength", 1}};
+    case Kind::column:
+      return {{"anyOf", {{{"type", "string"}}, integer(spec)}}};
     case Kind::identifier:
       return {{"type", "string"}, {"pattern", "^[A-Za-z][A-Za-z0-9_-]*$"}};
     case Kind::toggle:

@@ -102,6 +102,12 @@ std::string Section::text(std::string_view key) const {
   return word == nullptr ? std::string() : std::string(*word);
 }
 
+std::optional<double> Section::column_number(std::string_view key) const {
+  const auto found = values_.find(key);
+  const auto* number = found == values_.end() ? nullptr : std::get_if<double>(&found->second);
+  return number == nullptr ? std::nullopt : std::optional(*number);
+}
+
 std::vector<double> Section::numbers(std::string_view key) const {
   const auto found = values_.find(key);
   return found == values_.end() ? std::vector<double>{} : std::get<std::vector<double>>(found->second);
@@ -165,6 +171,9 @@ std::optional<Section::Value> Section::read(const KeySpec& spec, const toml::nod
     case Kind::identifier:
     case Kind::file:
       return read_text(spec, node);
+    case Kind::column:
+      if (node.is_string()) return read_text(spec, node);
+      return read_integer(spec, node);
     case Kind::toggle:
     case Kind::mark:
       return read_toggle(spec, node);

@@ -67,6 +67,8 @@ class Section {
   [[nodiscard]] std::optional<double> number(std::string_view key) const { return get<double>(key); }
   [[nodiscard]] std::optional<bool> toggle(std::string_view key) const { return get<bool>(key); }
   [[nodiscard]] std::string text(std::string_view key) const;
+  /// Number of a column, if its key has one and no heading.
+  [[nodiscard]] std::optional<double> column_number(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
 

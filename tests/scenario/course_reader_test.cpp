@@ -106,6 +106,20 @@ TEST(Table, OfForcesEndsARampWhereItComesBackToZero) {
   EXPECT_EQ(steps[3].leg, (Leg{0.75, 1.0, false, 2.25, 3.0}));
 }
 
+TEST(Table, HasColumnsWithNumbersToo) {
+  const std::string numbers = R"({ table = "path.csv", time = 1, value = 2 })";
+  const std::vector<Step> steps = steps_of(with_displacement(numbers), "0,0\n2,1e-3\n");
+  ASSERT_EQ(steps.size(), 1U);
+  EXPECT_EQ(steps[0].target, 1e-3);
+  EXPECT_EQ(steps[0].duration, 2.0);
+  EXPECT_EQ(steps_of(with_displacement(numbers), "t[s],x[mm]\n0,0\n2,1\n")[0].target, 1e-3);
+  EXPECT_EQ(faults(with_displacement(R"({ table = "path.csv", time = 1, value = 3 })"), "0,0\n2,1e-3\n"),
+            Lines{"die.toml:12:58: value = 3: path.csv has 2 columns"});
+  EXPECT_EQ(faults(with_displacement(R"({ table = "path.csv", time = 0, value = 2 })"), "0,0\n2,1e-3\n"),
+            Lines{"die.toml:12:47: time = 0: expected the heading of a column in quotes, for example \"t[s]\", or its "
+                  "number from 1"});
+}
+
 TEST(Table, IsRecordedWithTheScenario) {
   const std::string table = "t[s],x[mm]\n0,0\n1,1\n";
   EXPECT_EQ(parse(with_displacement(k_table), table).loading.files, (FileTexts{{"path.csv", table}}));
@@ -244,6 +258,8 @@ TEST(Course, IsAcceptedByTheSchemaAsByTheReader) {
   const auto accepts = [](const std::string& text) { return schema_accepts(*toml_as_json(text)); };
   EXPECT_TRUE(accepts(with_displacement(k_table)));
   EXPECT_TRUE(accepts(with_displacement(k_sine)));
+  EXPECT_TRUE(accepts(with_displacement(R"({ table = "path.csv", time = 1, value = 2 })")));
+  EXPECT_FALSE(accepts(with_displacement(R"({ table = "path.csv", time = 0, value = 2 })")));
   EXPECT_FALSE(accepts(with_displacement(k_table, "", ", duration = 1")));
   EXPECT_FALSE(accepts(with_displacement("{ table = \"path.csv\" }")));
   EXPECT_FALSE(accepts(with_displacement("0.1")));

@@ -356,7 +356,11 @@ const std::vector<FaultCase> k_faults{
     {"NoHeadings",
      "1,2\n3,4\n",
      {"d.csv:1:1: a number where a row of headings is expected, for example displacement[m],force[N]; or give the "
-      "columns by their numbers, from 1"}},
+      "columns by their numbers, from 1, without quotes"}},
+    {"ClockTimes",
+     "Weg;Kraft\n00:00:10;1\n",
+     {"d.csv:2:1: Weg = 00:00:10: expected a finite number; clock times are not understood, expected times in "
+      "one unit, such as seconds"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, MachineFileFaults, ::testing::ValuesIn(k_faults),

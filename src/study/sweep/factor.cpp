@@ -314,6 +314,7 @@ ReadValue read_value(const KeySpec& spec, const std::string& text, const std::st
     case Kind::text:
     case Kind::identifier:
     case Kind::file:
+    case Kind::column:
     case Kind::pair:
     case Kind::instants:
     case Kind::direction:
