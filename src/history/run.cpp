@@ -183,7 +183,13 @@ Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) 
   run.timings.integration = watch.lap();
   std::ranges::move(remarks_on(scenario), std::back_inserter(run.record.warnings));
 
-  for (std::size_t c = 0; c < scene.classes.size(); ++c) run.classes.push_back({scene.classes[c].name, scene.walls[c]});
+  for (std::size_t c = 0; c < scene.classes.size(); ++c) {
+    run.classes.push_back({scene.classes[c].name, scene.walls[c], {}});
+    for (const Eigen::Vector3d& normal : scene.classes[c].normals) {
+      const Eigen::Vector3d n = normal.array() + 0.0;  // not -0
+      run.classes.back().normals.push_back({n[0], n[1], n[2]});
+    }
+  }
   run.skipped = std::move(scene.skipped);
   if (run.integrator.is_direct()) run.skipped.emplace_back("time integration: every state is solved for directly");
   const double rtol = run.integrator.is_direct() ? 0.0 : scenario.numerics.rtol;

@@ -1,6 +1,7 @@
 /// Running a checked scenario and recording the run; every command runs scenarios by these functions.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -48,10 +49,11 @@ struct LeftOut {
 /// @throws ScenarioError if it asks for a direct solution, and the scene has none
 void check_integrator(const CheckedScenario& scenario);
 
-/// A contact class and the names of its walls.
+/// A contact class, the names of its walls and their outward unit normals.
 struct ClassSummary {
   std::string name;
   std::vector<std::string> walls;
+  std::vector<std::array<double, 3>> normals;
 };
 
 /// Wall-clock times [s].

@@ -41,7 +41,7 @@ Json to_json(const Run& run) {
   const Statistics& s = record.statistics;
   Json classes = Json::array();
   for (const ClassSummary& c : run.classes) {
-    classes.push_back({{"name", c.name}, {"multiplicity", c.walls.size()}, {"walls", c.walls}});
+    classes.push_back({{"name", c.name}, {"multiplicity", c.walls.size()}, {"walls", c.walls}, {"normals", c.normals}});
   }
   Json sensitivities = Json::array();
   for (const auto& [key, value, step, error, is_forward, why] : run.sensitivities) {

@@ -245,7 +245,7 @@ std::vector<KeySpec> loading_keys(const Model& model) {
        .reserved_where = for_model,
        .default_value = "fixed"},
       {.name = "angle",
-       .meaning = "inclination of the oblique walls",
+       .meaning = "elevation of the normals of the oblique walls above the horizontal, in the y-z plane",
        .kind = Kind::quantity,
        .dimension = Dimension::angle,
        .range = k_right_angle,

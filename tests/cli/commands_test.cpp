@@ -76,7 +76,8 @@ TEST_F(Commands, RunWritesWhatIsNeededToRepeatIt) {
   const auto json = nlohmann::json::parse(text("runs/small/run.json"));
   EXPECT_EQ(json["status"], "complete");
   EXPECT_EQ(json["classes"],
-            nlohmann::json::parse(R"([{"name": "axial", "multiplicity": 2, "walls": ["axial-z+", "axial-z-"]}])"));
+            nlohmann::json::parse(R"([{"name": "axial", "multiplicity": 2, "walls": ["axial-z+", "axial-z-"],
+                                       "normals": [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]}])"));
   EXPECT_EQ(json["integrator"]["asked"], "auto");
   EXPECT_EQ(json["integrator"]["used"], "direct");
   EXPECT_EQ(json["scenario"]["text"], k_small);

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "support/test_run.hpp"
 
@@ -46,6 +48,15 @@ TEST(Scene, TellsLateralWallsApartWhereSymmetryDoes) {
             (Named{{"axial", 2}, {"lateral-x", 2}, {"lateral-y", 2}, {"oblique", 2}}));
   EXPECT_EQ(names_and_multiplicities(make_scene(oblique(4))),
             (Named{{"axial", 2}, {"lateral-x", 2}, {"lateral-y", 2}, {"oblique", 4}}));
+}
+
+TEST(Scene, HasObliqueWallsInTheYZPlaneThatFaceEachOther) {
+  const Scene scene = make_scene(oblique(4));
+  const double c = std::cos(0.65);
+  const double s = std::sin(0.65);
+  const std::vector<Eigen::Vector3d> expected{{0.0, c, s}, {0.0, -c, -s}, {0.0, c, -s}, {0.0, -c, s}};
+  ASSERT_EQ(scene.classes[3].normals.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_LE((scene.classes[3].normals[k] - expected[k]).norm(), 1e-15) << k;
 }
 
 TEST(Scene, NamesTheClassesOfAFreeSetAfterTheirFirstWalls) {
