@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace monograin {
@@ -52,6 +53,8 @@ Eigen::MatrixXd residual_jacobian(const LeastSquaresProblem& problem, std::span<
       column = (above - present) / right;
     } else if (has_left) {
       column = (present - below) / left;
+    } else {
+      column.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
   }
   return jacobian;

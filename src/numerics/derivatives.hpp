@@ -20,7 +20,8 @@ namespace monograin {
 /// one-sided at a bound and where one side has no residuals. If a residual jumps within the step, the difference is
 /// taken on the side without the jump. A law may jump, as a force does at yield, and a fit may end with the jump at a
 /// datum.
-/// @return one row for each residual; zeros if there are no residuals at the parameters
+/// @return one row for each residual; a column of nan where neither side has residuals; zeros if there are none at the
+/// parameters
 [[nodiscard]] Eigen::MatrixXd residual_jacobian(const LeastSquaresProblem& problem, std::span<const double> parameters);
 
 }  // namespace monograin

@@ -194,6 +194,7 @@ Uncertainty uncertainty_of(const LeastSquaresProblem& problem, const LeastSquare
 
   std::vector<Eigen::Index> interior;
   for (std::size_t k = 0; k < p; ++k) {
+    result.has_derivative.push_back(!jacobian.col(static_cast<Eigen::Index>(k)).hasNaN());
     result.is_determined[k] = has_influence(problem, solution, jacobian, k);
     if (result.is_determined[k] && solution.bounds[k] == Bound::none) interior.push_back(static_cast<Eigen::Index>(k));
   }

@@ -34,11 +34,12 @@ struct Uncertainty {
   double standard_deviation = 0.0;     ///< s, in units of the residuals; nan if there are no errors
   double rise = 0.0;                   ///< rise of the cost at one standard error: s^2 times the loss's mean curvature
   std::vector<bool> is_determined;     ///< the residuals determine this parameter; also for parameters at a bound
-  double condition = 1.0;              ///< of the Jacobian of determined parameters, with columns of length one
-  Eigen::MatrixXd covariance;          ///< nan in rows and columns of parameters at a bound or not determined
-  Eigen::MatrixXd cost_covariance;     ///< s^2 (J^T J)^-1, which the shape of the cost shows
-  Eigen::MatrixXd data_covariance;  ///< part of the covariance that is due to the noise of the data; empty: all of it
-  std::vector<double> deviations;   ///< d of the residuals of data; empty: all are one
+  std::vector<bool> has_derivative;  ///< false: no residuals on either side of the fit; is_determined is false as well
+  double condition = 1.0;            ///< of the Jacobian of determined parameters, with columns of length one
+  Eigen::MatrixXd covariance;        ///< nan in rows and columns of parameters at a bound or not determined
+  Eigen::MatrixXd cost_covariance;   ///< s^2 (J^T J)^-1, which the shape of the cost shows
+  Eigen::MatrixXd data_covariance;   ///< part of the covariance that is due to the noise of the data; empty: all of it
+  std::vector<double> deviations;    ///< d of the residuals of data; empty: all are one
 
   [[nodiscard]] double standard_error(std::size_t parameter) const;
   /// A parameter's standard error over the one that the cost shows; 1 where residuals are weighted by their noise.

@@ -49,5 +49,9 @@ TEST(ResidualJacobian, IsZeroWhereThereAreNoResiduals) {
   EXPECT_EQ(derivative_at([](double) { return std::nan(""); }, 5.0), 0.0);
 }
 
+TEST(ResidualJacobian, IsUnknownWhereNeitherSideHasResiduals) {
+  EXPECT_TRUE(std::isnan(derivative_at([](double x) { return x == 5.0 ? 1.0 : std::nan(""); }, 5.0)));
+}
+
 }  // namespace
 }  // namespace monograin::derivatives_test
