@@ -13,10 +13,10 @@ namespace monograin {
 namespace {
 
 constexpr int k_most_runs = 80;
-constexpr int k_secant_runs = 10;      // after these runs brackets are halved, because secants may jump back and forth
-                                       // about a jump
 constexpr double k_least_slope = 0.1;  // of the shown displacement over the particle's; 1 for a rigid machine
 constexpr double k_least_step = 1e3 * k_epsilon;  // of a secant, over the largest x
+constexpr double k_least_share = 10.0;  // of a secant's step over the last moves of the turns before it, which change
+                                        // the force as well
 
 /// The last trials of one displacement that showed too little and too much.
 class Bracket {
@@ -28,8 +28,11 @@ class Bracket {
   };
 
   void add(const Trial& trial) { (trial.error < 0.0 ? low_ : high_) = trial; }
+  /// Forgets all trials.
+  void reset() { low_ = high_ = std::nullopt; }
   [[nodiscard]] bool is_valid() const { return low_ && high_ && low_->particle < high_->particle; }
   [[nodiscard]] bool is_within(double width) const { return is_valid() && high_->particle - low_->particle <= width; }
+  [[nodiscard]] bool holds(double particle) const { return particle > low_->particle && particle < high_->particle; }
   [[nodiscard]] double middle() const { return std::midpoint(low_->particle, high_->particle); }
   /// The middle of a jump of the force. The force that balances the machine lies in the jump, too, but follows the
   /// machine's line: its derivatives would be those of the machine, and hold only within the jump.
@@ -48,7 +51,9 @@ void keep_order(std::span<const double> x, std::vector<double>& particle) {
   }
 }
 
-/// Searches for the displacements of the particle at which the machine shows x: by secants, then between brackets.
+/// Searches for the displacements of the particle at which the machine shows x: by secants and, where these do not
+/// halve the error in each run, by halving brackets. The force at a point depends on the turns before it, too: as long
+/// as these move, trials of the point do not compare.
 class SeriesSearch {
  public:
   SeriesSearch(const Machine& machine, std::span<const double> x, double tolerance)
@@ -57,17 +62,20 @@ class SeriesSearch {
         tolerance_(tolerance),
         slopes_(x.size(), 1.0),
         brackets_(x.size()),
-        errors_(x.size()) {
+        errors_(x.size()),
+        moves_before_(x.size(), k_infinity) {
     for (const double value : x) largest_ = std::max(largest_, std::abs(value));
   }
 
   /// Takes the forces of a trial, and puts those in a jump into its middle. @return true if all displacements are found
-  bool take(std::span<const double> particle, std::span<double> forces, bool has_brackets) {
+  bool take(std::span<const double> particle, std::span<double> forces) {
+    find_moves(particle);
     bool is_done = true;
     for (std::size_t i = 0; i < x_.size(); ++i) {
       errors_[i] = particle[i] + machine_.addition(forces[i]) - x_[i];
+      if (moves_before_[i] > 0.0) brackets_[i].reset();
       brackets_[i].add({particle[i], errors_[i], forces[i]});
-      is_done = is_done && (!is_off(i) || (has_brackets && brackets_[i].is_within(tolerance_)));
+      is_done = is_done && (!is_off(i) || is_in_jump(i));
     }
     if (!is_done) return false;
     for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -76,26 +84,57 @@ class SeriesSearch {
     return true;
   }
 
-  void go_on(std::vector<double>& particle, std::span<const double> forces, bool has_brackets) {
+  void go_on(std::vector<double>& particle, std::span<const double> forces) {
     if (before_.empty()) {
       slopes_from_neighbours(particle, forces);
     } else {
       slopes_from_trials(particle);
     }
     before_ = particle;
-    errors_before_ = errors_;
     for (std::size_t i = 0; i < x_.size(); ++i) {
-      const bool is_halved = has_brackets && is_off(i) && brackets_[i].is_valid();
-      particle[i] = is_halved ? brackets_[i].middle() : particle[i] - errors_[i] / slopes_[i];
+      if (is_in_jump(i) || is_settled(i)) continue;
+      if (is_stuck(i)) slopes_[i] = 1.0;
+      const double secant = particle[i] - errors_[i] / slopes_[i];
+      const bool is_halved = is_off(i) && brackets_[i].is_valid() && (!is_shrinking(i) || !brackets_[i].holds(secant));
+      particle[i] = is_halved ? brackets_[i].middle() : secant;
     }
+    errors_before_ = errors_;
     keep_order(x_, particle);
   }
 
  private:
+  /// True if a point has been found, and improved once more. It then stays, so that points behind it settle as well.
+  [[nodiscard]] bool is_settled(std::size_t i) const {
+    return !errors_before_.empty() && !is_off(i) && std::abs(errors_before_[i]) <= tolerance_;
+  }
+  /// True if the last step has at least halved the error.
+  [[nodiscard]] bool is_shrinking(std::size_t i) const {
+    return !errors_before_.empty() && std::abs(errors_[i]) <= 0.5 * std::abs(errors_before_[i]);
+  }
+  /// True if the slope is so much too large that steps neither lower the error nor are long enough to show the slope.
+  [[nodiscard]] bool is_stuck(std::size_t i) const {
+    return is_off(i) && !is_shrinking(i) && !is_long(errors_[i] / slopes_[i]);
+  }
   [[nodiscard]] bool is_off(std::size_t i) const { return std::abs(errors_[i]) > tolerance_; }
+  [[nodiscard]] bool is_in_jump(std::size_t i) const {
+    return is_off(i) && !is_shrinking(i) && brackets_[i].is_within(tolerance_);
+  }
   [[nodiscard]] bool is_long(double step) const { return std::abs(step) > k_least_step * largest_; }
+  [[nodiscard]] bool is_turn(std::size_t i) const {
+    return i > 0 && i + 1 < x_.size() && (x_[i] - x_[i - 1]) * (x_[i + 1] - x_[i]) < 0.0;
+  }
   void set_slope(std::size_t i, double slope) {
     if (slope >= k_least_slope) slopes_[i] = slope;
+  }
+
+  /// Finds by how much the turns before each point have moved since the last trial.
+  void find_moves(std::span<const double> particle) {
+    if (before_.empty()) return;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      moves_before_[i] = largest;
+      if (is_turn(i)) largest = std::max(largest, std::abs(particle[i] - before_[i]));
+    }
   }
 
   void slopes_from_neighbours(std::span<const double> particle, std::span<const double> forces) {
@@ -111,7 +150,9 @@ class SeriesSearch {
   void slopes_from_trials(std::span<const double> particle) {
     for (std::size_t i = 0; i < x_.size(); ++i) {
       const double step = particle[i] - before_[i];
-      if (is_long(step)) set_slope(i, (errors_[i] - errors_before_[i]) / step);
+      if (is_long(step) && std::abs(step) >= k_least_share * moves_before_[i]) {
+        set_slope(i, (errors_[i] - errors_before_[i]) / step);
+      }
     }
   }
 
@@ -121,7 +162,8 @@ class SeriesSearch {
   double largest_ = 0.0;
   std::vector<double> slopes_;
   std::vector<Bracket> brackets_;
-  std::vector<double> errors_;  ///< of the displacements shown by the machine
+  std::vector<double> errors_;        ///< of the displacements shown by the machine
+  std::vector<double> moves_before_;  ///< largest last move of the turns before each point
   std::vector<double> before_, errors_before_;
 };
 
@@ -133,9 +175,8 @@ bool put_in_series(const Machine& machine, std::span<const double> x, const Forc
   keep_order(x, particle);
   for (int run = 0; run < k_most_runs; ++run) {
     if (!forces_of(particle, forces)) return false;
-    const bool has_brackets = run >= k_secant_runs;
-    if (search.take(particle, forces, has_brackets)) return true;
-    search.go_on(particle, forces, has_brackets);
+    if (search.take(particle, forces)) return true;
+    search.go_on(particle, forces);
   }
   return false;
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
@@ -239,6 +240,41 @@ TEST(MachineInSeries, TakesTheMiddleOfAJumpOfTheForce) {
   EXPECT_NEAR(found.forces[1], 1200.0, 1e-6);
   EXPECT_NEAR(found.forces[0], law(found.particle[0]), 1e-9);
   EXPECT_NEAR(found.forces[2], law(found.particle[2]), 1e-9);
+}
+
+TEST(MachineInSeries, FindsPointsWhoseForceFollowsFromATurnThatTheSearchStillMoves) {
+  // A plastic particle that unloads steeply: the force depends on the largest displacement before.
+  const auto forces_of = [](const std::vector<double>& particle, std::span<double> forces) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < particle.size(); ++i) {
+      largest = std::max(largest, particle[i]);
+      const double top = 2e8 * std::pow(largest, 1.2);
+      forces[i] = std::max(top - 2e10 * std::pow(largest - particle[i], 1.1), 0.0);
+    }
+    return true;
+  };
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> uniform;
+  int failures = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Machine machine{.offset = 1e-5, .compliance = 1e-7 * uniform(generator)};
+    std::vector<double> x;
+    for (int i = 0; i < 60; ++i) x.push_back(7e-5 * uniform(generator));
+    std::ranges::sort(x);
+    for (int i = 0; i < 60; ++i) x.push_back(x[59] - 1e-5 * uniform(generator));
+    std::sort(x.begin() + 60, x.end(), std::greater<>());
+    std::vector<double> particle = x;
+    std::vector<double> forces(x.size());
+    const double tolerance = 1e-12 * x[59];
+    if (!put_in_series(machine, x, forces_of, tolerance, particle, forces)) {
+      ++failures;
+      continue;
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      EXPECT_NEAR(particle[i] + machine.addition(forces[i]), x[i], 3.0 * tolerance) << trial << ' ' << i;
+    }
+  }
+  EXPECT_EQ(failures, 0);
 }
 
 TEST(MachineInSeries, SaysWhereTheParticleCannotFollow) {
