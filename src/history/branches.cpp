@@ -16,10 +16,15 @@ constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< least end of loading with a 
 constexpr double k_same_end = 1e-6;            ///< largest distance beyond the end of a piece that has a value, over x
 constexpr std::size_t k_short_run = 2;         ///< longest path between two turns that may be noise, in rows
 constexpr std::size_t k_least_short_runs = 3;  ///< number of such paths from which on they are noise
-constexpr double k_noise_factor = 6.0;         ///< least turn over the median noise; none of thousands exceeds it
-constexpr double k_turn_reach = 20.0;          ///< path beside a turn that shows where it is, over the median noise
-constexpr std::size_t k_least_line = 3;        ///< least number of rows beside a turn that show where it is
-constexpr double k_equal_steps = 0.05;         ///< largest difference of equal steps of x, over the step
+constexpr double k_noise_factor = 9.0;         ///< least turn over the noise; none of thousands of rows exceeds it
+constexpr double k_turn_reach = 30.0;          ///< path beside a turn that shows where it is, over the noise
+constexpr double k_noise_of_median = 0.6745 * 2.449489742783178;  ///< median of second differences over the noise
+constexpr std::size_t k_least_hold = 5;                           ///< rows
+constexpr double k_near_extreme = 8.0;   ///< reach of a hold's rows from the extreme one, over the noise
+constexpr int k_hold_rounds = 20;        ///< of the search for the ends of a hold
+constexpr double k_better_hold = 20.0;   ///< least F of the fit with a hold against that by two lines
+constexpr std::size_t k_least_line = 3;  ///< least number of rows beside a turn that show where it is
+constexpr double k_equal_steps = 0.05;   ///< largest difference of equal steps of x, over the step
 constexpr double k_doubt_of_row = 4.0;   ///< error of the row where lines meet, over the difference of their steps
 constexpr std::size_t k_turn_rows = 10;  ///< by which the row of the turn may be off
 constexpr double k_least_turn = 2e-3;    ///< least turn of few rows or among noise, over the range of x
@@ -82,7 +87,8 @@ struct Line {
   double row = 0.0;  ///< mean
   double x = 0.0;    ///< mean
   double slope = 0.0;
-  double squares = 0.0;  ///< sum of the squared distances from the line
+  double squares = 0.0;    ///< sum of the squared distances from the line
+  double variation = 0.0;  ///< sum of the squared distances from the mean
 
   [[nodiscard]] double at(double other) const noexcept { return x + slope * (other - row); }
 };
@@ -101,6 +107,7 @@ struct Line {
     const double away = static_cast<double>(k) - line.row;
     products += away * (x[k] - line.x);
     squares += away * away;
+    line.variation += (x[k] - line.x) * (x[k] - line.x);
   }
   if (squares > 0.0) line.slope = products / squares;
   for (std::size_t k = first; k <= last; ++k) {
@@ -109,6 +116,46 @@ struct Line {
   }
   return line;
 }
+
+/// Straight lines through any of the rows of a window, in a time that does not depend on their number.
+class WindowOfRows {
+ public:
+  WindowOfRows(std::span<const double> x, std::size_t first, std::size_t last)
+      : first_(first), last_(last), origin_(x[first]), sums_(last + 2 - first), products_(sums_), squares_(sums_) {
+    for (std::size_t k = first; k <= last; ++k) {
+      const std::size_t i = k - first;
+      const double value = x[k] - origin_;
+      sums_[i + 1] = sums_[i] + value;
+      products_[i + 1] = products_[i] + static_cast<double>(i) * value;
+      squares_[i + 1] = squares_[i] + value * value;
+    }
+  }
+
+  [[nodiscard]] std::size_t first() const noexcept { return first_; }
+  [[nodiscard]] std::size_t last() const noexcept { return last_; }
+
+  /// Line through rows `begin` to before `end`, at least one.
+  [[nodiscard]] Line line(std::size_t begin, std::size_t end) const {
+    const std::size_t i = begin - first_;
+    const std::size_t j = end - first_;
+    const auto count = static_cast<double>(end - begin);
+    const double middle = 0.5 * static_cast<double>(i + j - 1);
+    const double mean = (sums_[j] - sums_[i]) / count;
+    const double products = products_[j] - products_[i] - middle * mean * count;
+    const double distances = count * (count * count - 1.0) / 12.0;
+    Line line{.row = static_cast<double>(first_) + middle, .x = origin_ + mean};
+    line.variation = std::max(squares_[j] - squares_[i] - mean * mean * count, 0.0);
+    if (distances > 0.0) line.slope = products / distances;
+    line.squares = std::max(line.variation - line.slope * products, 0.0);
+    return line;
+  }
+
+ private:
+  std::size_t first_;
+  std::size_t last_;
+  double origin_;
+  std::vector<double> sums_, products_, squares_;
+};
 
 }  // namespace
 
@@ -130,11 +177,13 @@ namespace {
 }  // namespace
 
 double noise_in(std::span<const double> x) {
-  std::vector<double> short_runs = short_runs_of(x);
+  const std::vector<double> short_runs = short_runs_of(x);
   if (short_runs.size() < k_least_short_runs) return 0.0;
-  const auto middle = short_runs.begin() + static_cast<std::ptrdiff_t>(short_runs.size() / 2);
-  std::ranges::nth_element(short_runs, middle);
-  return *middle;
+  std::vector<double> differences;
+  for (std::size_t k = 2; k < x.size(); ++k) differences.push_back(std::abs(x[k] - 2.0 * x[k - 1] + x[k - 2]));
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::ranges::nth_element(differences, middle);
+  return std::min(*middle / k_noise_of_median, std::ranges::max(short_runs));
 }
 
 namespace {
@@ -165,20 +214,16 @@ namespace {
 
 /// x of a turn in noise: where two straight lines meet that fit the rows of both sides best, whichever of the rows next
 /// to the turn belongs to which.
-/// @param begin  first row of the branch that ends at the turn
-/// @param end    last row of the branch that begins there
-[[nodiscard]] double smoothed_at(std::span<const double> x, std::size_t begin, std::size_t turn, std::size_t end,
-                                 double noise) {
-  const std::size_t first = row_beside(x, turn, -1, begin, k_turn_reach * noise);
-  const std::size_t last = row_beside(x, turn, 1, end, k_turn_reach * noise);
-  if (last - first < 2 * k_least_line) return x[turn];
+[[nodiscard]] double x_where_lines_meet(std::span<const double> x, const WindowOfRows& window, std::size_t turn) {
+  const std::size_t first = window.first();
+  const std::size_t last = window.last();
   const std::size_t lowest = std::max(first + 1, turn - std::min(turn, k_turn_rows));
   const std::size_t highest = std::min(last - 2, turn + k_turn_rows);
   double least = k_infinity;
-  double smoothed = x[turn];
+  double met = x[turn];
   for (std::size_t middle = lowest; middle <= highest; ++middle) {
-    const Line before = line_through(x, first, middle);
-    const Line after = line_through(x, middle + 1, last);
+    const Line before = window.line(first, middle + 1);
+    const Line after = window.line(middle + 1, last + 1);
     if (!(before.squares + after.squares < least)) continue;
     least = before.squares + after.squares;
     const double row = (after.at(0.0) - before.at(0.0)) / (before.slope - after.slope);
@@ -186,9 +231,75 @@ namespace {
     const double at = meet ? row : static_cast<double>(middle);
     const double x_there = 0.5 * (before.at(at) + after.at(at));
     // Lines beside a dwell meet beyond it, but x has not been farther than the turn.
-    smoothed = x[turn] > x[first] ? std::min(x_there, x[turn]) : std::max(x_there, x[turn]);
+    met = x[turn] > x[first] ? std::min(x_there, x[turn]) : std::max(x_there, x[turn]);
   }
-  return smoothed;
+  return met;
+}
+
+/// Rows of a hold.
+struct Hold {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  double squares = k_infinity;  ///< sum of the squared distances of all rows of the window
+
+  [[nodiscard]] std::size_t rows() const noexcept { return end - begin; }
+};
+
+/// Hold between two lines of at least three rows that fits the rows of a window best, near given ends.
+[[nodiscard]] Hold hold_near(const WindowOfRows& window, std::size_t begin, std::size_t end) {
+  Hold hold{std::max(begin, window.first() + k_least_line), std::min(end, window.last() + 1 - k_least_line)};
+  if (hold.end < hold.begin + k_least_hold) return {};
+  const auto squares = [&window](std::size_t from, std::size_t to) {
+    return window.line(window.first(), from).squares + window.line(from, to).variation +
+           window.line(to, window.last() + 1).squares;
+  };
+  for (int round = 0; round < k_hold_rounds; ++round) {
+    const double before = hold.squares;
+    for (std::size_t from = window.first() + k_least_line; from + k_least_hold <= hold.end; ++from) {
+      if (const double sum = squares(from, hold.end); sum < hold.squares) hold = {from, hold.end, sum};
+    }
+    for (std::size_t to = hold.begin + k_least_hold; to + k_least_line <= window.last() + 1; ++to) {
+      if (const double sum = squares(hold.begin, to); sum < hold.squares) hold = {hold.begin, to, sum};
+    }
+    if (!(hold.squares < before)) break;
+  }
+  return hold;
+}
+
+/// Hold at a turn in noise; without rows if x is not held there.
+[[nodiscard]] Hold hold_at(std::span<const double> x, const WindowOfRows& window, std::size_t turn, double noise) {
+  const auto is_near = [&](std::size_t row) { return std::abs(x[row] - x[turn]) <= k_near_extreme * noise; };
+  std::size_t begin = turn;
+  std::size_t end = turn + 1;
+  while (begin > window.first() && is_near(begin - 1)) --begin;
+  while (end <= window.last() && is_near(end)) ++end;
+  const Hold hold = hold_near(window, begin, end);
+  if (hold.rows() == 0) return {};
+  double by_lines = k_infinity;
+  for (std::size_t middle = window.first() + 1; middle + 1 < window.last(); ++middle) {
+    const double sum =
+        window.line(window.first(), middle + 1).squares + window.line(middle + 1, window.last() + 1).squares;
+    by_lines = std::min(by_lines, sum);
+  }
+  const auto rows = static_cast<double>(window.last() + 1 - window.first());
+  const double variance = std::max(hold.squares / rows, noise * noise);
+  return by_lines - hold.squares > k_better_hold * variance ? hold : Hold{};
+}
+
+/// A turn of x with noise.
+[[nodiscard]] Turn turn_in_noise(std::span<const double> x, std::size_t begin, std::size_t extreme, std::size_t end,
+                                 double noise) {
+  const std::size_t first = row_beside(x, extreme, -1, begin, k_turn_reach * noise);
+  const std::size_t last = row_beside(x, extreme, 1, end, k_turn_reach * noise);
+  if (last - first < 2 * k_least_line) return {.last_row = extreme, .x = x[extreme]};
+  const WindowOfRows window(x, first, last);
+  const Hold hold = hold_at(x, window, extreme, noise);
+  if (hold.rows() == 0) return {.last_row = extreme, .x = x_where_lines_meet(x, window, extreme)};
+  return {.last_row = hold.end - 1,
+          .x = window.line(hold.begin, hold.end).x,
+          .is_known = true,
+          .held_begin = hold.begin,
+          .held_end = hold.end};
 }
 
 /// Largest difference of consecutive steps of x from row `first` to row `last`, over the largest step.
@@ -237,12 +348,20 @@ struct PlaceOfTurn {
 }
 
 /// A turn of x without noise, in the extreme row or beside it.
-[[nodiscard]] Turn turn_beside(std::span<const double> x, std::size_t begin, std::size_t extreme, std::size_t end,
-                               std::span<const double> measured) {
-  const auto place = place_between_rows(measured, begin, extreme, end);
-  if (!place || place->row == static_cast<double>(extreme)) return {extreme, x[extreme], place.has_value()};
+[[nodiscard]] Turn turn_beside(std::span<const double> x, std::size_t begin, std::size_t extreme, std::size_t end) {
+  Turn turn{.last_row = extreme, .x = x[extreme]};
+  std::size_t after = extreme + 1;
+  while (after <= end && x[after] == x[extreme]) ++after;
+  if (after - extreme >= k_least_hold) {
+    turn.held_begin = extreme;
+    turn.held_end = after;
+  }
+  const auto place = place_between_rows(x, begin, extreme, end);
+  turn.is_known = place.has_value();
+  if (!place || place->row == static_cast<double>(extreme)) return turn;
   const double there = line_through(x, place->last_row + 1 - k_least_line, place->last_row).at(place->row);
-  return {place->last_row, x[extreme] > x[begin] ? std::max(there, x[extreme]) : std::min(there, x[extreme])};
+  return {.last_row = place->last_row,
+          .x = x[extreme] > x[begin] ? std::max(there, x[extreme]) : std::min(there, x[extreme])};
 }
 
 }  // namespace
@@ -268,18 +387,17 @@ std::vector<std::size_t> turning_points(std::span<const double> x) {
   return turns;
 }
 
-std::vector<Turn> turns_of(std::span<const double> x, std::span<const std::size_t> points,
-                           std::span<const double> measured) {
+std::vector<Turn> turns_of(std::span<const double> x, std::span<const std::size_t> points) {
   const double noise = noise_in(x);
   std::vector<Turn> turns;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const std::size_t row = points[k];
     if (k == 0 || k + 1 == points.size()) {
-      turns.push_back({row, x[row]});
+      turns.push_back({.last_row = row, .x = x[row]});
     } else if (noise > 0.0) {
-      turns.push_back({row, smoothed_at(x, points[k - 1], row, points[k + 1], noise)});
+      turns.push_back(turn_in_noise(x, points[k - 1], row, points[k + 1], noise));
     } else {
-      turns.push_back(turn_beside(x, points[k - 1], row, points[k + 1], measured));
+      turns.push_back(turn_beside(x, points[k - 1], row, points[k + 1]));
     }
   }
   return turns;

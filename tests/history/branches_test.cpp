@@ -195,7 +195,7 @@ TEST(TurningPoints, AreNotThoseOfNoise) {
     const Values found{x[turns[1]], x[turns[2]], x[turns[3]]};
     const Values expected{1, 0.8, 0.9};
     for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(found[k], expected[k], 5 * noise) << noise;
-    const std::vector<Turn> smoothed = turns_of(x, turns, x);
+    const std::vector<Turn> smoothed = turns_of(x, turns);
     EXPECT_NEAR(smoothed[1].x, 1.0, 4 * noise) << noise << ": a hold";
     for (const std::size_t k : {1U, 2U}) EXPECT_NEAR(smoothed[k + 1].x, expected[k], noise) << noise;
   }
@@ -203,7 +203,7 @@ TEST(TurningPoints, AreNotThoseOfNoise) {
 
 TEST(TurningPoints, OfExactDataAreWhereTheirRowsAre) {
   const Values x = through({0, 2, 1.9, 2.5, 2.4}, 10, 0.0);
-  const std::vector<Turn> turns = turns_of(x, turning_points(x), x);
+  const std::vector<Turn> turns = turns_of(x, turning_points(x));
   const Values expected{0, 2, 1.9, 2.5, 2.4};
   ASSERT_EQ(turns.size(), expected.size());
   for (std::size_t k = 0; k < turns.size(); ++k) EXPECT_NEAR(turns[k].x, expected[k], 1e-14);
@@ -219,7 +219,7 @@ TEST(TurningPoints, OfRowsAtEqualTimesLieBetweenTheRows) {
       x.push_back(time < 1.0 ? time : 1.0 - 0.5 * (time - 1.0));
       if (time < 1.0 + 1e-12) ++rows_before;
     }
-    const std::vector<Turn> turns = turns_of(x, turning_points(x), x);
+    const std::vector<Turn> turns = turns_of(x, turning_points(x));
     ASSERT_EQ(turns.size(), 3U) << delay;
     EXPECT_NEAR(turns[1].x, 1.0, 1e-12) << delay;
     EXPECT_EQ(turns[1].last_row + 1, rows_before) << delay;
@@ -228,29 +228,15 @@ TEST(TurningPoints, OfRowsAtEqualTimesLieBetweenTheRows) {
 
 TEST(TurningPoints, OfUnevenRowsLieInTheExtremeRow) {
   const Values x{0, 0.2, 0.5, 0.6, 0.95, 1.0, 0.97, 0.8, 0.75};
-  const std::vector<Turn> turns = turns_of(x, turning_points(x), x);
+  const std::vector<Turn> turns = turns_of(x, turning_points(x));
   ASSERT_EQ(turns.size(), 3U);
   EXPECT_EQ(turns[1].x, 1.0);
   EXPECT_EQ(turns[1].last_row, 5U);
 }
 
-TEST(TurningPoints, OfCorrectedRowsInAHoldOfTheMeasuredOnesLieInARow) {
-  // The force relaxes while the measured displacement is held; without the give of the machine x then rises.
-  Values measured{0.0, 0.2, 0.4, 0.6, 0.8};
-  measured.insert(measured.end(), 9, 1.0);
-  measured.insert(measured.end(), {0.8, 0.6, 0.4, 0.2});
-  Values x = measured;
-  const Values force{0, 2, 4, 6, 8, 10, 9.5, 9.25, 9.2, 9.2, 9.2, 9.2, 9.2, 9.2, 5, 3, 1, 0};
-  ASSERT_EQ(force.size(), x.size());
-  for (std::size_t k = 0; k < x.size(); ++k) x[k] -= 0.01 * force[k];
-  const std::vector<Turn> turns = turns_of(x, turning_points(x), measured);
-  ASSERT_EQ(turns.size(), 3U);
-  EXPECT_NEAR(turns[1].x, 0.908, 1e-12);
-}
-
 TEST(TurningPoints, OfAHoldBetweenRowsLieOnTheHold) {
   const Values x{0.0, 0.3, 0.6, 0.9, 1.0, 1.0, 1.0, 1.0, 0.7, 0.4, 0.1};
-  const std::vector<Turn> turns = turns_of(x, turning_points(x), x);
+  const std::vector<Turn> turns = turns_of(x, turning_points(x));
   ASSERT_EQ(turns.size(), 3U);
   EXPECT_NEAR(turns[1].x, 1.0, 1e-14);
 }
@@ -263,11 +249,66 @@ TEST(TurningPoints, LieWhereTheRowsBesideThemLeadNotAtTheLargestNoise) {
     const Values x = through({0, 1, 0.9}, 600, 1e-3, seed);
     const auto turns = turning_points(x);
     ASSERT_EQ(turns.size(), 3U) << seed;
-    sum_smoothed += turns_of(x, turns, x)[1].x - 1.0;
+    sum_smoothed += turns_of(x, turns)[1].x - 1.0;
     sum_of_rows += x[turns[1]] - 1.0;
   }
   EXPECT_NEAR(sum_smoothed / k_samples, 0.0, 2e-4) << "a fifth of the noise";
   EXPECT_GT(sum_of_rows / k_samples, 7e-4);
+}
+
+TEST(TurningPoints, InAHoldLieAtItsMean) {
+  // Up in steps of five times the noise, a hold, and back.
+  constexpr double k_noise = 2e-3;
+  double sum = 0.0;
+  constexpr int k_samples = 50;
+  for (unsigned seed = 0; seed < k_samples; ++seed) {
+    const Values up = through({0, 1}, 100, k_noise, seed);
+    const Values held = through({1, 1}, 60, k_noise, seed + 1000);
+    const Values down = through({1, 0.8}, 60, k_noise, seed + 2000);
+    Values x(up.begin(), up.end() - 1);
+    x.insert(x.end(), held.begin(), held.end());
+    x.insert(x.end(), down.begin() + 1, down.end());
+    EXPECT_NEAR(noise_in(x), k_noise, 0.35 * k_noise) << seed;
+    const std::vector<Turn> turns = turns_of(x, turning_points(x));
+    ASSERT_EQ(turns.size(), 3U) << seed;
+    EXPECT_NEAR(static_cast<double>(turns[1].held_begin), 100.0, 3.0) << seed;
+    EXPECT_NEAR(static_cast<double>(turns[1].held_end), 161.0, 3.0) << seed;
+    EXPECT_EQ(turns[1].last_row, turns[1].held_end - 1) << seed;
+    EXPECT_NEAR(turns[1].x, 1.0, 4.0 * k_noise / std::sqrt(60.0)) << seed;
+    sum += turns[1].x - 1.0;
+  }
+  EXPECT_NEAR(sum / k_samples, 0.0, 0.1 * k_noise);
+}
+
+TEST(TurningPoints, OfALongHoldBesideSteepRampsIsOne) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    // Ramps come back by less than their noise, and do not show its size.
+    Values x = through({0, 400, 400, 0}, 200, 0.0);
+    const Values held = through({400, 400}, 1000, 0.0);
+    x.insert(x.begin() + 200, held.begin(), held.end());
+    std::mt19937 generator(seed);
+    std::normal_distribution<double> error(0.0, 1.0);
+    for (double& value : x) value += error(generator);
+    EXPECT_EQ(turning_points(x).size(), 3U) << seed;
+  }
+}
+
+TEST(TurningPoints, OfARampAndItsWayBackHaveNoHold) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    for (const double step : {0.2, 1.0, 5.0}) {
+      const Values x = through({0, 1, 0.5}, static_cast<std::size_t>(1.0 / (step * 1e-3)), 1e-3, seed);
+      for (const Turn& turn : turns_of(x, turning_points(x))) EXPECT_EQ(turn.held_rows(), 0U) << step << ' ' << seed;
+    }
+  }
+}
+
+TEST(TurningPoints, OfExactDataInAHoldHaveItsRows) {
+  const Values x{0.0, 0.3, 0.6, 1.0, 1.0, 1.0, 1.0, 1.0, 0.7, 0.4, 0.1};
+  const std::vector<Turn> turns = turns_of(x, turning_points(x));
+  ASSERT_EQ(turns.size(), 3U);
+  EXPECT_EQ(turns[1].held_begin, 3U);
+  EXPECT_EQ(turns[1].held_end, 8U);
+  EXPECT_EQ(turns[1].x, 1.0);
 }
 
 TEST(TurningPoints, OfManyEqualCyclesAreAllOfThem) {

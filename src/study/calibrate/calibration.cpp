@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -29,49 +30,13 @@ constexpr double k_margin_of_round_off = 1e3;
 constexpr double k_bad_condition = 1e3;  // a correlation of 1 - 2e-6
 constexpr std::size_t k_bootstrap_samples = 400;
 constexpr std::uint64_t k_seed = 20260101;
+constexpr double k_narrow = 0.2;  // of a bootstrap's standard error over that by the covariance
 
 constexpr std::size_t k_dense = 800;    // rows; a search with more of them first thins the data
 constexpr std::size_t k_thinned = 400;  // approximate number of rows that are left
 
 /// Number of parts into which each piece of a curve is divided, so that the curve is smooth.
 std::size_t parts_of(std::span<const double> x) { return std::max<std::size_t>(1, k_curve_points / x.size()); }
-
-/// x with further values in between.
-std::vector<double> refined(std::span<const double> x, std::size_t parts) {
-  std::vector<double> result{x.front()};
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    for (std::size_t k = 1; k < parts; ++k) {
-      result.push_back(std::lerp(x[i - 1], x[i], static_cast<double>(k) / static_cast<double>(parts)));
-    }
-    result.push_back(x[i]);
-  }
-  return result;
-}
-
-/// Data with a row at each turn that lies between two of theirs.
-struct MeasuredPath {
-  std::vector<double> x;
-  std::vector<double> y;
-};
-MeasuredPath with_turns(const std::vector<double>& x, const std::vector<double>& y) {
-  MeasuredPath path;
-  std::size_t done = 0;
-  const auto go_to = [&](std::size_t row) {
-    for (; done <= row; ++done) {
-      path.x.push_back(x[done]);
-      path.y.push_back(y[done]);
-    }
-  };
-  for (const Turn& turn : turns_of(x, turning_points(x), x)) {
-    const std::size_t row = turn.last_row;
-    go_to(row);
-    if (turn.x == x[row] || row == 0 || row + 1 == x.size() || turn.x == x[row + 1]) continue;
-    path.x.push_back(turn.x);
-    path.y.push_back(std::lerp(y[row - 1], y[row], (turn.x - x[row - 1]) / (x[row] - x[row - 1])));
-  }
-  go_to(x.size() - 1);
-  return path;
-}
 
 /// Values of one curve, out of values that are stored row by row.
 template <class T>
@@ -89,7 +54,9 @@ class Fit {
         weights_(calibration.weights),
         prior_weight_(prior_weight) {
     for (const MeasuredCurve& curve : calibration.curves) {
-      responses_.emplace_back(calibration, curve, x_of(calibration, curve), y_of(calibration, curve));
+      DataPath path = path_through(x_of(calibration, curve));
+      std::vector<double> y = path.at_points(y_of(calibration, curve));
+      responses_.emplace_back(calibration, curve, std::move(path), std::move(y));
     }
     for (std::size_t row = 0; row < calibration.weights.size(); ++row) {
       if (calibration.weights[row] > 0.0) rows_.push_back(row);
@@ -219,6 +186,7 @@ class Fit {
     }
     add_statistics(result);
     result.notes = notes_of(calibration_, result);
+    std::ranges::copy(notes_, std::back_inserter(result.notes));
     return result;
   }
 
@@ -354,13 +322,16 @@ class Fit {
       reason(IntervalMethod::covariance, "the sum of squares is quadratic within two standard errors");
       return check.better;
     }
-    reason(
-        IntervalMethod::profile,
-        fmt::format("the sum of squares {} near the minimum: {:.0f} standard error{} along '{}' it rises {:.2g} times "
-                    "as far as the covariance says",
-                    check.shape == CostShape::kinked ? "has a kink" : "is not quadratic", check.at,
-                    std::abs(check.at) == 1.0 ? "" : "s", calibration_.free[check.parameter].key.path, check.ratio));
-    is_kinked_ = check.shape == CostShape::kinked;
+    const bool is_finite = std::isfinite(check.ratio);
+    const std::string place =
+        fmt::format("{:.0f} standard error{} along '{}'", check.at, std::abs(check.at) == 1.0 ? "" : "s",
+                    calibration_.free[check.parameter].key.path);
+    is_kinked_ = is_finite && check.shape == CostShape::kinked;
+    reason(IntervalMethod::profile,
+           is_finite ? fmt::format("the sum of squares {} near the minimum: {} it rises {:.2g} times as far as the "
+                                   "covariance says",
+                                   is_kinked_ ? "has a kink" : "is not quadratic", place, check.ratio)
+                     : fmt::format("the trial run {} from the minimum failed", place));
     return check.better;
   }
 
@@ -395,6 +366,7 @@ class Fit {
   }
 
   void by_bootstrap(CalibrationResult& result) {
+    notes_.clear();
     if (result.uncertainty.degrees_of_freedom == 0) return;
     const auto tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
     const bool is_independent = !tests || tests->are_independent();
@@ -411,8 +383,19 @@ class Fit {
     for (std::size_t k = 0; k < result.intervals.size(); ++k) {
       if (!result.uncertainty.is_determined[k]) continue;
       result.intervals[k] = drawn.interval(k, calibration_.confidence);
+      note_narrow(calibration_.free[k].key.path, drawn.standard_error(k) / result.uncertainty.standard_error(k));
       rescale(result.uncertainty, k, drawn.standard_error(k) / result.uncertainty.standard_error(k));
     }
+  }
+
+  /// Notes a bootstrap whose fits have hardly moved.
+  /// @param share  its standard error over that by the covariance
+  void note_narrow(const std::string& path, double share) {
+    if (!(share < k_narrow)) return;
+    notes_.push_back(fmt::format(
+        "the bootstrap's standard error of '{}' is {:.2g} times that by the covariance: its fits stay where "
+        "they begin, as at a kink of the sum of squares; use intervals = \"profile\"",
+        path, share));
   }
 
   /// Derivatives of the response in all rows, including those that do not count.
@@ -456,7 +439,7 @@ class Fit {
     result.weights = weights_;
     if (!calibration_.has_machine()) return;
     for (const Response& response : responses_) {
-      result.particle.insert(result.particle.end(), response.particle().begin(), response.particle().end());
+      std::ranges::copy(response.particle(), std::back_inserter(result.particle));
     }
   }
 
@@ -479,9 +462,10 @@ class Fit {
       };
       return {data_x, rows(result.fit.y), rows(result.fit.band)};
     }
-    const MeasuredPath path = with_turns(data_x, y_of(calibration_, measured));
+    const DataPath path = path_through(data_x);
     const std::vector<double> x = refined(path.x, parts);
-    Response response_through(calibration_, measured, x, refined(path.y, parts));
+    Response response_through(calibration_, measured, refined(path, parts),
+                              refined(path.at_points(y_of(calibration_, measured)), parts));
     LeastSquaresProblem problem = problem_;
     problem.residual_count = x.size();
     problem.residuals = [&response_through](std::span<const double> parameters, std::span<double> response) {
@@ -527,6 +511,7 @@ class Fit {
   std::vector<std::size_t> priors_;  ///< indices of the parameters whose priors are residuals
   bool is_kinked_ = false;           ///< the sum of squares has a kink near its minimum
   double prior_weight_;              ///< standard deviation of weighted residuals
+  std::vector<std::string> notes_;   ///< on the intervals
   LeastSquaresProblem problem_;
 };
 

@@ -427,8 +427,8 @@ class CalibrationReader {
     curve.driven = drive->column;
     curve.control = drive->kind;
     curve.start = drive->start;
-    const DataProgram program = program_through(x.values, curve.control, curve.start, x.values);
-    if (!x.values.empty() && program.steps.empty()) {
+    const DataPath path = path_through(x.values);
+    if (!path.x.empty() && program_along(path, path.x, curve.control, curve.start).steps.empty()) {
       faults_.add(spec.request.where,
                   fmt::format("{}: it never changes; expected data along a loading path", spec.request.naming));
     }

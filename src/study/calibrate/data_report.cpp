@@ -64,9 +64,20 @@ std::vector<ColumnSummary> summaries_of(const std::string& text, const std::stri
 
 std::vector<DataBranch> branches_of(const std::vector<double>& x) {
   std::vector<DataBranch> branches;
-  const std::vector<std::size_t> turns = turning_points(x);
+  const std::vector<std::size_t> rows = turning_points(x);
+  const std::vector<Turn> turns = turns_of(x, rows);
+  const bool has_noise = noise_in(x) > 0.0;
   for (std::size_t k = 1; k < turns.size(); ++k) {
-    branches.push_back({turns[k - 1], turns[k], std::abs(x[turns[k]]) > std::abs(x[turns[k - 1]])});
+    const Turn& from = turns[k - 1];
+    const Turn& to = turns[k];
+    DataBranch branch{.begin = from.held_rows() > 0 ? from.held_end - 1 : rows[k - 1],
+                      .end = to.held_rows() > 0 ? to.held_begin : rows[k],
+                      .is_loading = std::abs(x[rows[k]]) > std::abs(x[rows[k - 1]]),
+                      .held_begin = to.held_begin,
+                      .held_end = to.held_end};
+    branch.x_begin = has_noise ? from.x : x[branch.begin];
+    branch.x_end = has_noise ? to.x : x[branch.end];
+    branches.push_back(branch);
   }
   return branches;
 }
@@ -136,7 +147,7 @@ figure::ChartSeries branches_of(const DataReport& report, bool is_loading) {
 figure::ChartSeries turning_points_of(const DataReport& report) {
   figure::ChartSeries series{.legend = "turning points", .style = figure::ChartSeries::Style::points, .colour = 0};
   for (std::size_t k = 1; k < report.branches.size(); ++k) {
-    series.x.push_back(report.x.values[report.branches[k].begin]);
+    series.x.push_back(report.branches[k].x_begin);
     series.y.push_back(report.y.values[report.branches[k].begin]);
   }
   return series;
@@ -282,15 +293,18 @@ std::string data_text(const DataReport& report) {
   text += fmt::format("\nx: {}, y: {}\n", named(report.x), named(report.y));
   for (const std::string& remark : report.remarks) text += remark + '\n';
   std::vector<TextRow> branches{{"branch", "lines", "rows", "x from", "to", "y from", "to"}};
-  std::array<std::size_t, 2> counts{};
+  const auto add = [&](std::string name, std::size_t begin, std::size_t end, double x_begin, double x_end) {
+    branches.push_back({std::move(name), fmt::format("{}-{}", report.lines[begin], report.lines[end]),
+                        fmt::format("{}", end - begin + 1), with_unit(report.x, x_begin), with_unit(report.x, x_end),
+                        with_unit(report.y, report.y.values[begin]), with_unit(report.y, report.y.values[end])});
+  };
+  std::array<std::size_t, 3> counts{};
   for (const DataBranch& branch : report.branches) {
     const std::size_t count = ++counts[branch.is_loading ? 0 : 1];
-    branches.push_back(
-        {fmt::format("{} {}", branch.is_loading ? "loading" : "unloading", count),
-         fmt::format("{}-{}", report.lines[branch.begin], report.lines[branch.end]),
-         fmt::format("{}", branch.end - branch.begin + 1), with_unit(report.x, report.x.values[branch.begin]),
-         with_unit(report.x, report.x.values[branch.end]), with_unit(report.y, report.y.values[branch.begin]),
-         with_unit(report.y, report.y.values[branch.end])});
+    add(fmt::format("{} {}", branch.is_loading ? "loading" : "unloading", count), branch.begin, branch.end,
+        branch.x_begin, branch.x_end);
+    if (branch.held_end == branch.held_begin) continue;
+    add(fmt::format("hold {}", ++counts[2]), branch.held_begin, branch.held_end - 1, branch.x_end, branch.x_end);
   }
   if (branches.size() > 1) text += '\n' + aligned(branches);
   return text;

@@ -29,6 +29,10 @@ struct DataBranch {
   std::size_t begin = 0;   ///< rows
   std::size_t end = 0;     ///< the last row, in which the next branch begins
   bool is_loading = true;  ///< |x| grows
+  double x_begin = 0.0;    ///< where x turns, in the file's unit: of noisy data beside the noise of the rows
+  double x_end = 0.0;
+  std::size_t held_begin = 0;  ///< rows in which x is held after the branch: the first one, and the one after the last
+  std::size_t held_end = 0;
 };
 
 /// x or y as in the file.

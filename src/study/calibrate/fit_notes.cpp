@@ -107,15 +107,28 @@ void note_table_ends(const Calibration& calibration, const MeasuredCurve& curve,
       curve.machine.forces.back(), largest));
 }
 
+/// Notes the holds of noisy x.
+void note_holds(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x,
+                Notes& notes) {
+  for (const Turn& turn : turns_of(x, turning_points(x))) {
+    if (turn.held_rows() == 0) continue;
+    notes.push_back(fmt::format("hold of {} rows, lines {} to {}: {} is taken as constant there, {:.6g} {}, their mean",
+                                turn.held_rows(), calibration.lines[curve.begin + turn.held_begin],
+                                calibration.lines[curve.begin + turn.held_end - 1], calibration.x.observable, turn.x,
+                                calibration.x.si));
+  }
+}
+
 /// Notes noise of x, and data that begin with unloading.
 void note_path(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x, Notes& notes) {
   const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
   if (const double noise = noise_in(x); noise > 0.0) {
     notes.push_back(fmt::format(
-        "{} goes back and forth by {:.2g} {}: that is noise, and turns nothing; turning points lie where the rows "
+        "{} has noise of about {:.2g} {} (standard deviation), which turns nothing; turning points lie where the rows "
         "beside them lead. Intervals do not contain the error of these points, and are too narrow where unloading is "
         "steep",
         calibration.x.observable, noise, calibration.x.si));
+    note_holds(calibration, curve, x, notes);
   } else if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
     notes.push_back("the data begin with unloading; the particle is loaded to their first row from rest");
   }
@@ -129,7 +142,7 @@ void note_missed_turns(const Calibration& calibration, const CalibrationResult& 
       std::sqrt(result.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom));
   double largest = k_far_turn * deviation;
   std::string note;
-  for (const Turn& turn : turns_of(x, turning_points(x), x)) {
+  for (const Turn& turn : turns_of(x, turning_points(x))) {
     const std::size_t k = turn.last_row;
     const std::size_t row = curve.begin + k;
     if (turn.is_known || k == 0 || k + 2 >= x.size()) continue;
@@ -182,7 +195,12 @@ std::vector<std::string> notes_of(const Calibration& calibration, const Calibrat
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     const FreeParameter& parameter = calibration.free[k];
     const std::string& path = parameter.key.path;
-    if (!result.uncertainty.is_determined[k]) {
+    if (!result.uncertainty.has_derivative[k]) {
+      note(
+          fmt::format("no error and no interval of '{}': trial runs on both sides of the fit failed, so that no "
+                      "derivative is known; the data may determine it all the same",
+                      path));
+    } else if (!result.uncertainty.is_determined[k]) {
       note(
           fmt::format("the data do not determine '{}': other values of it, alone or together with other parameters, "
                       "fit as well",

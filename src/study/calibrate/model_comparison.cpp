@@ -39,7 +39,7 @@ Parts parts_of(const Calibration& calibration) {
   for (const MeasuredCurve& curve : calibration.curves) {
     const auto x = std::span(calibration.x.values).subspan(curve.begin, curve.end - curve.begin);
     std::vector<std::size_t> turns;
-    for (const Turn& turn : turns_of(x, turning_points(x), x)) turns.push_back(turn.last_row);
+    for (const Turn& turn : turns_of(x, turning_points(x))) turns.push_back(turn.last_row);
     for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
       // The last row before a turn belongs to the stretch that ends there.
       const Part stretch{curve.begin + (k == 0 ? 0 : turns[k] + 1), curve.begin + turns[k + 1] + 1};

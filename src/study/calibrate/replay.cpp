@@ -73,79 +73,128 @@ class ColumnSink final : public HistorySink {
   Rows& rows_;
 };
 
-/// A program that passes the values of branches, one after the other.
-class ProgramOfBranches {
+/// Largest difference of equal values.
+double same_among(std::span<const double> values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return k_same_value * largest;
+}
+
+/// Builds a path, branch by branch.
+class PathBuilder {
  public:
-  ProgramOfBranches(std::span<const double> values, Step::Kind kind, double start) : kind_(kind), at_(start) {
-    program_.rows.resize(values.size());
-    program_.values.assign(values.begin(), values.end());
-    double largest = std::abs(start);
-    for (const double value : values) largest = std::max(largest, std::abs(value));
-    same_ = k_same_value * largest;
+  explicit PathBuilder(std::span<const double> x) : x_(x), same_(same_among(x)) { path_.point_of.resize(x.size()); }
+
+  /// Appends a branch from one turn to the next one. The first and the last turn do not bound the values beside them.
+  void pass(const Turn& from, const Turn& to, bool is_first, bool is_last) {
+    const bool rises = to.x > from.x;
+    const double away = rises ? k_infinity : -k_infinity;
+    const double begin = is_first ? -away : from.x;
+    const double end = is_last ? away : to.x;
+    std::vector<std::pair<double, std::size_t>> rows;  // in the order in which the branch passes them
+    for (std::size_t row = is_first ? 0 : from.last_row + 1; row <= to.last_row; ++row) {
+      const bool is_held = row >= to.held_begin && row < to.held_end;
+      rows.emplace_back(is_held ? to.x : std::clamp(x_[row], std::min(begin, end), std::max(begin, end)), row);
+    }
+    const auto along = [rises](const auto& pair) { return rises ? pair.first : -pair.first; };
+    std::ranges::stable_sort(rows, {}, along);
+    for (const auto& [x, row] : rows) path_.point_of[row] = point_at(x);
+    path_.ends.push_back(is_last ? path_.x.size() - 1 : point_at(to.x));
   }
 
-  [[nodiscard]] DataProgram take() && { return std::move(program_); }
-
-  /// Appends a branch.
-  /// @param first, last  its rows
-  /// @param begin, end   its turning points; infinite: its values have no bound on this side
-  void pass(std::size_t first, std::size_t last, double begin, double end) {
-    const bool rises = begin < end;
-    std::vector<std::size_t> rows(last + 1 - first);  // in the order in which the branch passes their values
-    std::iota(rows.begin(), rows.end(), first);
-    // Noise of the rows next to a turn goes beyond it.
-    for (const std::size_t row : rows)
-      program_.values[row] = std::clamp(program_.values[row], std::min(begin, end), std::max(begin, end));
-    const auto is_before = [rises](double a, double b) { return rises ? a < b : a > b; };
-    std::ranges::stable_sort(rows, is_before, [this](std::size_t row) { return program_.values[row]; });
-    // Where the first branch begins behind the start, because of noise or after a load that is not in the data.
-    if (const double nearest = program_.values[rows.front()]; is_before(nearest, at_) && !is_same(nearest, at_)) {
-      go_to(nearest);
-      program_.times.push_back(static_cast<double>(program_.steps.size()));
-    }
-    const double target = std::isfinite(end) ? end : program_.values[rows.back()];
-    const auto steps_before = static_cast<double>(program_.steps.size());
-    double passed = at_;
-    for (const std::size_t row : rows) {
-      if (!is_same(program_.values[row], passed)) {
-        passed = program_.values[row];
-        program_.times.push_back(steps_before + (passed - at_) / (target - at_));
-      }
-      program_.rows[row] = program_.times.size();
-    }
-    if (!is_same(target, at_)) go_to(target);
-  }
+  [[nodiscard]] DataPath take() && { return std::move(path_); }
 
  private:
-  [[nodiscard]] bool is_same(double a, double b) const noexcept { return !(std::abs(a - b) > same_); }
-  void go_to(double target) {
-    program_.steps.push_back({.kind = kind_, .target = target, .duration = 1.0});
-    at_ = target;
+  std::size_t point_at(double x) {
+    if (path_.x.empty() || std::abs(x - path_.x.back()) > same_) path_.x.push_back(x);
+    return path_.x.size() - 1;
   }
 
-  DataProgram program_;
-  Step::Kind kind_;
-  double at_;          ///< value that the program has reached
-  double same_ = 0.0;  ///< difference of equal values
+  std::span<const double> x_;
+  double same_;
+  DataPath path_;
 };
 
 }  // namespace
 
-DataProgram program_through(std::span<const double> values, Step::Kind kind, double start,
-                            std::span<const double> measured) {
-  ProgramOfBranches program(values, kind, start);
-  const std::vector<Turn> turns = turns_of(values, turning_points(values), measured);
-  if (turns.size() == 1) program.pass(0, 0, start < values[0] ? -k_infinity : k_infinity, values[0]);
-  for (std::size_t k = 1; k < turns.size(); ++k) {
-    // The first and the last turn do not bound the values beside them.
-    const Turn& from = turns[k - 1];
-    const Turn& to = turns[k];
-    const double away = to.x > from.x ? k_infinity : -k_infinity;
-    const bool is_first = k == 1;
-    const bool is_last = k + 1 == turns.size();
-    program.pass(is_first ? 0 : from.last_row + 1, to.last_row, is_first ? -away : from.x, is_last ? away : to.x);
+std::vector<double> DataPath::at_rows(std::span<const double> of_points) const {
+  std::vector<double> values;
+  for (const std::size_t point : point_of) values.push_back(of_points[point]);
+  return values;
+}
+
+std::vector<double> DataPath::at_points(std::span<const double> of_rows) const {
+  std::vector<double> values(x.size(), 0.0);
+  std::vector<double> counts(x.size(), 0.0);
+  for (const std::size_t point : point_of) counts[point] += 1.0;
+  for (std::size_t row = 0; row < point_of.size(); ++row) {
+    values[point_of[row]] += of_rows[row] / counts[point_of[row]];
   }
-  return std::move(program).take();
+  for (std::size_t point = 1; point < values.size(); ++point) {
+    if (counts[point] == 0.0) values[point] = values[point - 1];
+  }
+  return values;
+}
+
+DataPath path_through(std::span<const double> x) {
+  if (x.size() < 2)
+    return {{x.begin(), x.end()}, std::vector<std::size_t>(x.size()), std::vector<std::size_t>(x.size())};
+  PathBuilder builder(x);
+  const std::vector<Turn> turns = turns_of(x, turning_points(x));
+  for (std::size_t k = 1; k < turns.size(); ++k) builder.pass(turns[k - 1], turns[k], k == 1, k + 1 == turns.size());
+  return std::move(builder).take();
+}
+
+std::vector<double> refined(std::span<const double> values, std::size_t parts) {
+  std::vector<double> result{values.front()};
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    for (std::size_t k = 1; k < parts; ++k) {
+      result.push_back(std::lerp(values[i - 1], values[i], static_cast<double>(k) / static_cast<double>(parts)));
+    }
+    result.push_back(values[i]);
+  }
+  return result;
+}
+
+DataPath refined(const DataPath& path, std::size_t parts) {
+  DataPath result{refined(path.x, parts), path.ends, {}};
+  for (std::size_t& end : result.ends) end *= parts;
+  result.point_of.resize(result.x.size());
+  std::iota(result.point_of.begin(), result.point_of.end(), std::size_t{0});
+  return result;
+}
+
+DataProgram program_along(const DataPath& path, std::span<const double> values, Step::Kind kind, double start) {
+  DataProgram program;
+  const double same = std::max(same_among(values), k_same_value * std::abs(start));
+  const auto is_same = [same](double a, double b) { return !(std::abs(a - b) > same); };
+  double at = start;  // value that the program has reached
+  const auto go_to = [&](double target) {
+    program.steps.push_back({.kind = kind, .target = target, .duration = 1.0, .rate = {}, .until = {}, .where = {}});
+    at = target;
+  };
+  std::size_t first = 0;
+  for (const std::size_t end : path.ends) {
+    const double target = values[end];
+    // Where the first branch begins behind the start, because of noise or after a load that is not in the data.
+    const double nearest = values[first];
+    const bool is_behind = target > nearest ? nearest < at : nearest > at;
+    if (first == 0 && end > 0 && is_behind && !is_same(nearest, at)) {
+      go_to(nearest);
+      program.times.push_back(static_cast<double>(program.steps.size()));
+    }
+    const auto steps_before = static_cast<double>(program.steps.size());
+    double passed = at;
+    for (; first <= end; ++first) {
+      if (!is_same(values[first], passed)) {
+        passed = values[first];
+        program.times.push_back(steps_before + (passed - at) / (target - at));
+      }
+      program.instants.push_back(program.times.size());
+    }
+    if (!is_same(target, at)) go_to(target);
+  }
+  return program;
 }
 
 const Measurable::Column* Measurable::find(std::string_view name) const noexcept {
@@ -177,21 +226,20 @@ Measurable measurable_in(const CheckedScenario& scenario) {
   return measurable;
 }
 
-Replay::Replay(CheckedScenario scenario, ReplayColumns columns, std::vector<double> values)
+Replay::Replay(CheckedScenario scenario, ReplayColumns columns, DataPath path)
     : scenario_(std::move(scenario)),
       integrator_(choose_integrator(scenario_.numerics.integrator, *make_scene(scenario_).system).used),
       columns_(std::move(columns)),
-      measured_(std::move(values)) {
-  follow(measured_);
+      path_(std::move(path)) {
+  follow(path_.x);
 }
 
 void Replay::follow(std::vector<double> values) {
   values_ = std::move(values);
-  DataProgram program = program_through(values_, columns_.control, columns_.start, measured_);
+  DataProgram program = program_along(path_, values_, columns_.control, columns_.start);
   scenario_.loading.steps = std::move(program.steps);
   scenario_.output.times = std::move(program.times);
-  rows_ = std::move(program.rows);
-  prescribed_ = std::move(program.values);
+  instants_ = std::move(program.instants);
   resolution_ = 0.0;
   // Prescribed quantities follow the program exactly, except a force on a contact that has been lost.
   for (const double value : values_) resolution_ = std::max(resolution_, k_same_force * std::abs(value));
@@ -240,21 +288,32 @@ bool Replay::run(std::span<double> response) {
   } catch (const std::invalid_argument& error) {  // the model has no law for these constants
     problem_ = error.what();
   }
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    failed_at_ = i;
-    if (rows_[i] >= seen_.size()) return false;
-    const auto [driven, watched] = seen_[rows_[i]];
-    if (std::abs(driven - prescribed_[i]) > resolution_) {
-      problem_ = fmt::format("{} is {:.6g} where {:.6g} is prescribed", columns_.driven, driven, prescribed_[i]);
+  for (std::size_t point = 0; point < instants_.size(); ++point) {
+    const bool is_reached = instants_[point] < seen_.size();
+    std::string problem = is_reached ? problem_at(point) : problem_;
+    if (!is_reached || !problem.empty()) {
+      problem_ = std::move(problem);
+      failed_at_ = first_row_from(point);
       return false;
     }
-    if (!std::isfinite(watched)) {
-      problem_ = fmt::format("{} has no value there", columns_.watched);
-      return false;
-    }
-    response[i] = watched;
+    response[point] = seen_[instants_[point]][1];
   }
   return true;
+}
+
+/// Why there is no response at a point; empty if there is one.
+std::string Replay::problem_at(std::size_t point) const {
+  const auto [driven, watched] = seen_[instants_[point]];
+  if (std::abs(driven - values_[point]) > resolution_) {
+    return fmt::format("{} is {:.6g} where {:.6g} is prescribed", columns_.driven, driven, values_[point]);
+  }
+  return std::isfinite(watched) ? std::string() : fmt::format("{} has no value there", columns_.watched);
+}
+
+/// The first row in the data that lies at a point or after it.
+std::size_t Replay::first_row_from(std::size_t point) const {
+  const auto found = std::ranges::find_if(path_.point_of, [point](std::size_t at) { return at >= point; });
+  return static_cast<std::size_t>(std::min(found, path_.point_of.end() - 1) - path_.point_of.begin());
 }
 
 }  // namespace monograin

@@ -34,14 +34,13 @@ std::vector<double> y_of(const Calibration& calibration, const MeasuredCurve& cu
   return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
 }
 
-Response::Response(const Calibration& calibration, const MeasuredCurve& curve, std::vector<double> x,
-                   std::vector<double> y)
+Response::Response(const Calibration& calibration, const MeasuredCurve& curve, DataPath path, std::vector<double> y)
     : calibration_(calibration),
       curve_(curve),
-      replay_(curve.scenario, {curve.driven, calibration.y.observable, curve.control, curve.start}, x),
-      x_(std::move(x)),
-      y_(std::move(y)),
-      noise_(noise_of(calibration)) {}
+      replay_(curve.scenario, {curve.driven, calibration.y.observable, curve.control, curve.start}, std::move(path)),
+      measured_(std::move(y)),
+      noise_(noise_of(calibration)),
+      response_(measured_.size()) {}
 
 bool Response::operator()(std::span<const double> parameters, std::span<double> response) {
   problem_.clear();
@@ -52,33 +51,42 @@ bool Response::operator()(std::span<const double> parameters, std::span<double> 
       if (!replay_.set(path, parameters[k])) return false;
     }
   }
-  const Machine machine = calibration_.machine_of(curve_, parameters);
+  if (!run(calibration_.machine_of(curve_, parameters))) return false;
+  for (std::size_t row = 0; row < path().point_of.size(); ++row) response[row] = response_[path().point_of[row]];
+  return true;
+}
+
+/// Finds the response at the points of the path.
+bool Response::run(const Machine& machine) {
   if (calibration_.machine_moves_x()) {
-    if (!machine.is_rigid()) return run_in_series(machine, response);
-    if (std::exchange(is_moved_, false)) replay_.follow(x_);
-    particle_ = x_;
-    return replay_.run(response);
+    if (!machine.is_rigid()) return run_in_series(machine);
+    if (std::exchange(is_moved_, false)) replay_.follow(path().x);
+    particle_ = path().x;
+    return replay_.run(response_);
   }
-  if (!replay_.run(response)) return false;
-  particle_.assign(response.begin(), response.end());
-  for (std::size_t i = 0; i < x_.size(); ++i) response[i] += machine.addition(x_[i]);
+  if (!replay_.run(response_)) return false;
+  particle_ = response_;
+  for (std::size_t i = 0; i < response_.size(); ++i) response_[i] += machine.addition(path().x[i]);
   return true;
 }
 
 /// Finds the response if x is the sum of the displacements of the machine and the particle.
-bool Response::run_in_series(const Machine& machine, std::span<double> response) {
+bool Response::run_in_series(const Machine& machine) {
   is_moved_ = true;
-  particle_ = x_;
-  for (std::size_t i = 0; i < x_.size(); ++i) particle_[i] -= machine.addition(y_[i]);
+  const std::vector<double>& x = path().x;
+  particle_ = x;
   double largest = 0.0;
-  for (const double x : x_) largest = std::max(largest, std::abs(x));
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    particle_[i] -= machine.addition(measured_[i]);
+    largest = std::max(largest, std::abs(x[i]));
+  }
   bool has_run = true;
   const auto forces_of = [&](const std::vector<double>& particle, std::span<double> forces) {
     replay_.follow(particle);
     has_run = replay_.run(forces);
     return has_run;
   };
-  if (put_in_series(machine, x_, forces_of, noise_ * largest, particle_, response)) return true;
+  if (put_in_series(machine, x, forces_of, noise_ * largest, particle_, response_)) return true;
   if (has_run) problem_ = "no displacements of the particle and of the machine add up to those measured";
   return false;
 }

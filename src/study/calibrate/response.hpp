@@ -24,29 +24,32 @@ inline constexpr double k_direct_noise = 1e-13;
 /// Response of one curve's scenario to the parameters of a fit, for the residuals of a least-squares problem.
 class Response {
  public:
-  /// @param x, y  measured values
-  Response(const Calibration& calibration, const MeasuredCurve& curve, std::vector<double> x, std::vector<double> y);
+  /// @param path  of x
+  /// @param y     measured values at the path's points, about
+  Response(const Calibration& calibration, const MeasuredCurve& curve, DataPath path, std::vector<double> y);
 
   /// @return true if there is a response
   bool operator()(std::span<const double> parameters, std::span<double> response);
 
   /// Displacements at the particle in the last run, if x or y is a displacement.
-  [[nodiscard]] const std::vector<double>& particle() const noexcept { return particle_; }
+  [[nodiscard]] std::vector<double> particle() const { return path().at_rows(particle_); }
   [[nodiscard]] const Replay& replay() const noexcept { return replay_; }
   /// Reason why there was no response.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_.empty() ? replay_.problem() : problem_; }
 
  private:
-  bool run_in_series(const Machine& machine, std::span<double> response);
+  [[nodiscard]] const DataPath& path() const noexcept { return replay_.path(); }
+  bool run(const Machine& machine);
+  bool run_in_series(const Machine& machine);
 
   const Calibration& calibration_;
   const MeasuredCurve& curve_;
   Replay replay_;
-  std::vector<double> x_;
-  std::vector<double> y_;
-  double noise_;  ///< relative error of a response
-  std::vector<double> particle_;
-  bool is_moved_ = false;  ///< the replay follows values other than x
+  std::vector<double> measured_;  ///< y at the points of the path, about
+  double noise_;                  ///< relative error of a response
+  std::vector<double> particle_;  ///< displacements at the points
+  std::vector<double> response_;  ///< at the points
+  bool is_moved_ = false;         ///< the replay follows values other than x
   std::string problem_;
 };
 

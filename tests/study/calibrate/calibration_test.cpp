@@ -315,7 +315,7 @@ std::vector<Row> late_hertz(double gap, double radius, double deviation = 0.0) {
 // Symmetry makes both walls one class, which has the name of the first, where neither is late.
 TEST(Replay, FindsAWallThatItsGapPutsIntoTheClassOfAnotherOne) {
   Replay replay(parse_scenario(k_late_wall_text, "s.toml"), {.driven = "top.displacement", .watched = "late.force"},
-                {4e-5, 1e-4});
+                path_through(std::vector{4e-5, 1e-4}));
   std::vector<double> forces(2);
   ASSERT_TRUE(replay.run(forces));
   EXPECT_LT(forces[0], 0.9 * 50e9 * hertz_force_per_modulus(4e-5));
@@ -802,15 +802,22 @@ TEST_F(CalibrationTest, TheScenarioMayStandInTheFileItself) {
   EXPECT_EQ(fitted.material.at("youngs_modulus"), modulus);
 }
 
+DataProgram program_of(const std::vector<double>& x) {
+  const DataPath path = path_through(x);
+  return program_along(path, path.x, Step::Kind::displacement, 0.0);
+}
+
 TEST(DataProgram, HasAStepForEachStretchAndAnInstantForEachValue) {
   const std::vector<double> x{0.0, 1.0, 4.0, 4.0, 2.0, 3.0};
-  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0, x);
+  EXPECT_EQ(path_through(x).x, (std::vector{0.0, 1.0, 4.0, 2.0, 3.0}));
+  EXPECT_EQ(path_through(x).point_of, (std::vector<std::size_t>{0, 1, 2, 2, 3, 4}));
+  const DataProgram program = program_of(x);
   ASSERT_EQ(program.steps.size(), 3U);
   EXPECT_EQ(program.steps[0].target, 4.0);
   EXPECT_EQ(program.steps[1].target, 2.0);
   EXPECT_EQ(program.steps[2].target, 3.0);
   EXPECT_EQ(program.times, (std::vector{0.25, 1.0, 2.0, 3.0}));
-  EXPECT_EQ(program.rows, (std::vector<std::size_t>{0, 1, 2, 2, 3, 4}));
+  EXPECT_EQ(program.instants, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
 }
 
 TEST(DataProgram, TakesNoiseForNoTurnAndPassesItsValuesInOrder) {
@@ -819,28 +826,29 @@ TEST(DataProgram, TakesNoiseForNoTurnAndPassesItsValuesInOrder) {
   std::vector<double> x{0.0};
   for (int k = 1; k <= 600; ++k) x.push_back((k <= 400 ? 0.01 * k : 8.0 - 0.01 * k) + noise(generator));
   x[1] = -0.03;
-  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0, x);
+  const DataPath path = path_through(x);
+  const DataProgram program = program_of(x);
   ASSERT_EQ(program.steps.size(), 3U) << "behind the start, up, and down";
   const double top = program.steps[1].target;
   EXPECT_NEAR(top, 4.0, 0.02);
   EXPECT_LT(program.steps[0].target, 0.0);
   EXPECT_TRUE(std::ranges::is_sorted(program.times));
   for (std::size_t k = 1; k < x.size(); ++k) {
-    EXPECT_EQ(program.values[k], std::min(x[k], top)) << k;
-    const double time = program.times[program.rows[k] - 1];
+    const std::size_t point = path.point_of[k];
+    EXPECT_NEAR(path.x[point], std::min(x[k], top), 1e-11) << k;
+    const double time = program.times[program.instants[point] - 1];
     const Step& step = program.steps[static_cast<std::size_t>(std::ceil(time)) - 1];
     const double from = time > 2.0 ? top : (time > 1.0 ? program.steps[0].target : 0.0);
-    EXPECT_NEAR(from + (time - std::ceil(time) + 1.0) * (step.target - from), program.values[k], 1e-12) << k;
+    EXPECT_NEAR(from + (time - std::ceil(time) + 1.0) * (step.target - from), path.x[point], 1e-11) << k;
   }
 }
 
 TEST(DataProgram, GoesToWhereDataOfAnUnloadingBegin) {
-  const std::vector x{5.0, 4.0, 3.0};
-  const DataProgram program = program_through(x, Step::Kind::displacement, 0.0, x);
+  const DataProgram program = program_of({5.0, 4.0, 3.0});
   ASSERT_EQ(program.steps.size(), 2U);
   EXPECT_EQ(program.steps[0].target, 5.0);
   EXPECT_EQ(program.times, (std::vector{1.0, 1.5, 2.0}));
-  EXPECT_EQ(program.rows, (std::vector<std::size_t>{1, 2, 3}));
+  EXPECT_EQ(program.instants, (std::vector<std::size_t>{1, 2, 3}));
 }
 
 // --- what is written

@@ -88,6 +88,22 @@ TEST_F(DataReportTest, FindsTheWaysOfNoisyCycles) {
   EXPECT_EQ(chart.panels.front().x.label, "h [um]");
 }
 
+TEST_F(DataReportTest, ShowsAHoldWithItsMeanDisplacement) {
+  std::mt19937 generator(5);
+  std::normal_distribution<double> noise(0.0, 0.2);
+  std::string text = "h[um],F[mN]\n";
+  for (int row = 0; row <= 200; ++row) {
+    const double h = row <= 70 ? row : (row <= 130 ? 70.0 : 70.0 - 0.2 * (row - 130));
+    text += fmt::format("{:.6f},{:.6f}\n", h + noise(generator), 2.0 * h);
+  }
+  const DataReport report = report_of_file(write("d.csv", text));
+  ASSERT_EQ(report.branches.size(), 2U);
+  EXPECT_NEAR(report.branches[0].x_end, 70.0, 0.1);
+  EXPECT_EQ(report.branches[1].x_begin, report.branches[0].x_end);
+  EXPECT_NEAR(static_cast<double>(report.branches[0].held_end - report.branches[0].held_begin), 61.0, 3.0);
+  EXPECT_NE(data_text(report).find("\nhold 1 "), std::string::npos) << data_text(report);
+}
+
 TEST_F(DataReportTest, ThatIsNoTableIsRefused) {
   for (const char* text : {"", "hello\n", "a\n1\n2\n", "a,b\nx,y\n"}) {
     EXPECT_THROW(static_cast<void>(report_of_file(write("d.csv", text))), ScenarioError) << text;

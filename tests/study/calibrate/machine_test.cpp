@@ -21,6 +21,7 @@
 #include "history/run.hpp"
 #include "history/table.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/calibrate/fit_notes.hpp"
 #include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
@@ -83,6 +84,12 @@ file = "{}"
 
  private:
   TemporaryFolder folder_;
+};
+
+/// Force over the displacement that the machine shows.
+struct MachineRow {
+  double x;
+  double force;
 };
 
 bool has(const CalibrationResult& result, std::size_t k, double value) {
@@ -284,6 +291,113 @@ TEST(MachineInSeries, SaysWhereTheParticleCannotFollow) {
   EXPECT_FALSE(put_in_series({.compliance = 1.0}, particle, refuse, 1e-12, particle, forces));
 }
 
+// --- noise of the displacement
+
+/// A granule that is loaded, held, unloaded, loaded farther and unloaded: its program takes one row a second.
+constexpr const char* k_granule = R"(model = "mdr"
+[particle]
+radius = "0.4 mm"
+[material]
+youngs_modulus = "2 GPa"
+poisson_ratio = 0.3
+yield_stress = "60 MPa"
+[loading]
+configuration = "simple"
+steps = [
+  { displacement = "0.15 R0", duration = 60 }, { hold = true, duration = 60 }, { force = "2 N", duration = 60 },
+  { displacement = "0.2 R0", duration = 60 }, { force = "0.5 N", duration = 60 }]
+[output]
+points = 60
+)";
+
+class NoisyGranule : public MachineCalibration {
+ protected:
+  NoisyGranule() {
+    write_text(folder() / "s.toml", k_granule);
+    const Table history = run_scenario(parse_scenario(k_granule, "s.toml")).record.history;
+    for (std::size_t row = 0; row < history.row_count(); ++row) {
+      if (history.column("row")[row] != 0.0) continue;
+      const double force = history.column("axial.force")[row];
+      rows_.push_back({history.column("axial.displacement")[row] + 12e-6 + 60e-9 * force, force});
+    }
+  }
+
+  /// @param noise  standard deviation of the displacement [m]
+  [[nodiscard]] Calibration measured(unsigned seed, double noise, const std::string& fit = {}) const {
+    std::mt19937_64 generator(seed);
+    std::normal_distribution<double> normal;
+    std::string text = "displacement[m],force[N]\n";
+    for (const MachineRow& row : rows_) {
+      text += fmt::format("{:.9f},{:.3f}\n", row.x + noise * normal(generator), row.force + 0.15 * normal(generator));
+    }
+    write_text(folder() / "d.csv", text);
+    write_text(folder() / "c.toml", fmt::format(R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "displacement[m]"
+y = "force[N]"
+offset = "12 um"
+compliance = "60 nm/N"
+[fit]
+{}
+[free]
+"material.youngs_modulus" = {{ from = "0.1 GPa", to = "10 GPa" }}
+"material.yield_stress" = {{ from = "1 MPa", to = "200 MPa" }}
+)",
+                                                fit));
+    return read_calibration(folder() / "c.toml");
+  }
+
+ private:
+  std::vector<MachineRow> rows_;
+};
+
+constexpr double k_noise_of_x = 2e-7;
+
+TEST_F(NoisyGranule, HeldAtItsPeakGivesItsModulusBack) {
+  double mean = 0.0;
+  constexpr unsigned k_sets = 6;
+  for (unsigned seed = 1; seed <= k_sets; ++seed) {
+    const CalibrationResult result = calibrate(measured(seed, k_noise_of_x));
+    mean += result.solution.parameters[0] / 2e9 / k_sets;
+    EXPECT_EQ(result.solution.failures, 0) << seed;
+    ASSERT_TRUE(result.uncertainty.is_determined[0]) << seed;
+    EXPECT_LT(result.uncertainty.standard_error(0), 0.02 * 2e9) << seed;
+    EXPECT_TRUE(std::ranges::any_of(result.notes, [](const std::string& note) {
+      return note.starts_with("hold of ") && note.find(" rows, lines ") != std::string::npos;
+    })) << seed;
+  }
+  EXPECT_NEAR(mean, 1.0, 0.015);
+}
+
+TEST_F(NoisyGranule, WithoutNoiseOfTheDisplacementHasNoNoteOnIt) {
+  const CalibrationResult result = calibrate(measured(1, 0.0));
+  for (const std::string& note : result.notes) EXPECT_EQ(note.find("hold of "), std::string::npos) << note;
+  EXPECT_TRUE(has(result, 0, 2e9));
+}
+
+TEST_F(NoisyGranule, HasABootstrapAsWideAsItsStandardErrors) {
+  const CalibrationResult by_covariance = calibrate(measured(2, k_noise_of_x));
+  const CalibrationResult result = calibrate(measured(2, k_noise_of_x, "intervals = \"bootstrap\""));
+  ASSERT_EQ(result.method, IntervalMethod::bootstrap);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double width = result.intervals[k].upper - result.intervals[k].lower;
+    const bool has_reason = std::ranges::any_of(
+        result.notes, [](const std::string& note) { return note.starts_with("the bootstrap's standard error"); });
+    EXPECT_TRUE(has_reason || width > 0.4 * by_covariance.uncertainty.standard_error(k)) << k << ": " << width;
+  }
+}
+
+TEST_F(NoisyGranule, WhoseTrialsFailBesideTheFitIsNotCalledUndetermined) {
+  const Calibration calibration = measured(1, 0.0);
+  CalibrationResult result = calibrate(calibration);
+  result.uncertainty.is_determined[0] = result.uncertainty.has_derivative[0] = false;
+  const std::vector<std::string> notes = notes_of(calibration, result);
+  EXPECT_TRUE(std::ranges::any_of(
+      notes, [](const std::string& note) { return note.find("no derivative is known") != std::string::npos; }));
+  for (const std::string& note : notes) EXPECT_EQ(note.find("do not determine"), std::string::npos) << note;
+}
+
 TEST_F(MachineCalibration, AKnownComplianceGivesTheModulusBack) {
   write_text(folder() / "frame.csv", "load[kN],d[um]\n0,0\n2,40\n10,200\n");
   for (const char* compliance :
@@ -321,13 +435,9 @@ TEST_F(MachineCalibration, ASoughtComplianceLeavesTheModulusWithinItsInterval) {
   EXPECT_EQ(fitted.material.at("youngs_modulus"), result.solution.parameters[0]);
 }
 
-/// Hertz between two walls, on a machine: force over its own displacement, exact.
-struct MachineRow {
-  double x;
-  double force;
-};
 constexpr double k_hertz_modulus = 70e9;
 
+/// Hertz between two walls, exact.
 std::vector<MachineRow> hertz_on_a_machine(double offset, double compliance) {
   std::vector<MachineRow> rows;
   for (int i = -4; i <= 20; ++i) {
