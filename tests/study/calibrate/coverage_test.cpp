@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <random>
 #include <string>
@@ -19,7 +20,8 @@
 namespace monograin::coverage_test {
 namespace {
 
-// Ten sets a law show gross faults within half a minute; MONOGRAIN_COVERAGE_SETS=200 makes a measurement of it.
+// Ten sets a law show gross faults within half a minute. MONOGRAIN_COVERAGE_SETS=1500 makes a measurement of it, and
+// MONOGRAIN_COVERAGE_SEED draws other sets.
 
 /// A law with its true numbers, and those that are sought beside offset and compliance.
 struct Experiment {
@@ -29,6 +31,7 @@ struct Experiment {
   int points;  ///< in each step
   const char* free;
   std::vector<double> truth;
+  double noise = 0.01;  ///< of the largest force
 };
 
 const std::vector<Experiment> k_experiments{
@@ -46,20 +49,24 @@ const std::vector<Experiment> k_experiments{
 "material.yield_stress" = { from = "1 MPa", to = "200 MPa" })",
      {1.2e9, 45e6}},
     {"semimech",
-     "youngs_modulus = 5e9\npoisson_ratio = 0.3\nyield_stress = 50e6",
-     "{ displacement = '0.3 R0', duration = 1 }",
+     "youngs_modulus = 5e9\npoisson_ratio = 0.3\nyield_stress = 50e6\n[semimech]\nunloading = \"mdr\"",
+     "{ displacement = '0.3 R0', duration = 1 }, { displacement = '0.28 R0', duration = 1 }",
      80,
-     R"("material.yield_stress" = { from = "5 MPa", to = "500 MPa" })",
-     {50e6}},
+     R"("material.youngs_modulus" = { from = "2 GPa", to = "50 GPa" }
+"material.yield_stress" = { from = "5 MPa", to = "90 MPa" })",
+     {5e9, 50e6},
+     0.002},
     {"compressible",
      "yield_pressure = 150e6\nstiffness_ratio = 100\nshear_ratio = 1.0\ntensile_ratio = 0.01\nnu0 = 0.3\n"
-     "[compressible]\nk = 3.0",
+     "[compressible]\nk = 3.0\na = 3.5",
      "{ displacement = '0.4 R0', duration = 1 }",
      80,
-     R"("compressible.k" = { from = 0.1, to = 20 })",
-     {3.0}}};
+     R"("compressible.k" = { from = 0.1, to = 20 }
+"compressible.a" = { from = 1, to = 10 })",
+     {3.0, 3.5}}};
 
 constexpr double k_radius = 0.01;  // [m]
+constexpr int k_quick_sets = 10;
 
 std::string scenario_of(const Experiment& experiment) {
   return fmt::format(
@@ -69,14 +76,16 @@ std::string scenario_of(const Experiment& experiment) {
 }
 
 constexpr double k_level = 0.95;
-constexpr double k_noise = 0.01;               // of the largest force
+constexpr double k_share_off = 0.03;  // largest difference of the share of intervals that hold the truth from the level
+constexpr double k_bias = 0.1;        // largest bias, over the standard error
+constexpr double k_margin = 3.0;      // in standard errors of both, which add for few sets
 constexpr double k_largest_offset = 0.02;      // of R0
 constexpr double k_largest_compliance = 5e-8;  // [m/N]
 
 /// One measured file: the machine adds an offset and its give.
 std::string measured(const std::vector<double>& x, const std::vector<double>& force, double offset, double compliance,
-                     std::mt19937_64& generator) {
-  std::normal_distribution<double> noise(0.0, k_noise * std::ranges::max(force));
+                     double noise_share, std::mt19937_64& generator) {
+  std::normal_distribution<double> noise(0.0, noise_share * std::ranges::max(force));
   std::string text = "displacement[m],force[N]\n";
   for (std::size_t i = 0; i < x.size(); ++i) {
     text += fmt::format("{:.17g},{:.17g}\n", x[i] + offset + compliance * force[i], force[i] + noise(generator));
@@ -84,12 +93,17 @@ std::string measured(const std::vector<double>& x, const std::vector<double>& fo
   return text;
 }
 
+/// A whole number of the environment.
+int asked_for(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::atoi(text);
+}
+
 class Coverage : public ::testing::TestWithParam<Experiment> {};
 
 TEST_P(Coverage, OfIntervalsIsThatOfTheirLevelWithOffsetAndComplianceSought) {
   const Experiment& experiment = GetParam();
-  const char* asked = std::getenv("MONOGRAIN_COVERAGE_SETS");
-  const int sets = asked == nullptr ? 10 : std::atoi(asked);
+  const int sets = asked_for("MONOGRAIN_COVERAGE_SETS", k_quick_sets);
   const TemporaryFolder folder;
   const std::string scenario = scenario_of(experiment);
   write_text(folder.path() / "s.toml", scenario);
@@ -110,13 +124,14 @@ TEST_P(Coverage, OfIntervalsIsThatOfTheirLevelWithOffsetAndComplianceSought) {
   std::vector<int> held(count, 0);
   std::vector<double> bias(count, 0.0);
   std::vector<double> spread(count, 0.0);
-  std::mt19937_64 generator(17);
+  std::mt19937_64 generator(static_cast<std::uint64_t>(asked_for("MONOGRAIN_COVERAGE_SEED", 17)));
   std::uniform_real_distribution<double> uniform;
   for (int set = 0; set < sets; ++set) {
     std::vector<double> truth = experiment.truth;
     truth.push_back(k_largest_offset * k_radius * uniform(generator));
     truth.push_back(k_largest_compliance * uniform(generator));
-    write_text(folder.path() / "d.csv", measured(x, force, truth[count - 2], truth[count - 1], generator));
+    write_text(folder.path() / "d.csv",
+               measured(x, force, truth[count - 2], truth[count - 1], experiment.noise, generator));
     const CalibrationResult result = calibrate(read_calibration(folder.path() / "c.toml"));
     for (std::size_t k = 0; k < count; ++k) {
       const Interval& interval = result.intervals[k];
@@ -126,13 +141,16 @@ TEST_P(Coverage, OfIntervalsIsThatOfTheirLevelWithOffsetAndComplianceSought) {
     }
   }
   const std::vector<FreeParameter> free = read_calibration(folder.path() / "c.toml").free;
-  const double share_error = std::sqrt(k_level * (1.0 - k_level) / sets);
+  // Few sets tell less than the bars ask for.
+  const double chance = k_margin * std::sqrt(k_level * (1.0 - k_level) / sets) + 0.5 / sets;
+  const double share_bar = std::max(k_share_off, chance);
+  const double bias_bar = k_bias + k_margin / std::sqrt(sets);
   for (std::size_t k = 0; k < count; ++k) {
     const double share = static_cast<double>(held[k]) / sets;
     const double bias_over_error = bias[k] / std::sqrt(spread[k]);
-    EXPECT_NEAR(share, k_level, 3.0 * share_error) << free[k].key.path << " is held in " << held[k] << " of " << sets;
-    EXPECT_LE(std::abs(bias_over_error), 3.0 / std::sqrt(sets)) << free[k].key.path;
-    if (asked != nullptr) {
+    EXPECT_NEAR(share, k_level, share_bar) << free[k].key.path << " is held in " << held[k] << " of " << sets;
+    EXPECT_LE(std::abs(bias_over_error), bias_bar) << free[k].key.path;
+    if (sets != k_quick_sets) {
       fmt::print("{}, {}: held in {:.1f} %, bias {:.3f} of the standard error {:.3g}\n", experiment.model,
                  free[k].key.path, 100.0 * share, bias_over_error, std::sqrt(spread[k]));
     }
