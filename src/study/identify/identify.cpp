@@ -5,13 +5,17 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
 #include "history/recorder.hpp"
 #include "history/run.hpp"
+#include "numerics/derivatives.hpp"
 #include "scenario/faults.hpp"
+#include "scenario/words.hpp"
 #include "scene/scene.hpp"
+#include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/response.hpp"
 #include "system/resolution.hpp"
 
@@ -228,6 +232,71 @@ CheckedScenario driven_scenario(const ExperimentProgram& program, const Table& r
   return program.scenario;
 }
 
+/// Standard deviation of a value of y.
+double deviation_of_y(const ExperimentProgram& program, double value, double time) {
+  const double deviation = std::hypot(program.absolute_noise, program.relative_noise * value);
+  if (!(deviation > 0.0)) {
+    throw_fault(program.noise_at,
+                fmt::format("{} = 0 at {:.6g} s has no relative noise; expected an absolute part, too",
+                            program.observable, time));
+  }
+  return deviation;
+}
+
+/// The rows that the machine records of a run, as a calibration has them.
+Calibration recorded(const Table& history, const ExperimentPlan& plan, const ExperimentProgram& program) {
+  Calibration fit;
+  fit.scenario = program.scenario;
+  fit.free = plan.free;
+  fit.x.observable = program.driven.column;
+  fit.y.observable = program.observable;
+  const std::size_t x = *history.find(fit.x.observable);
+  const std::size_t y = *history.find(fit.y.observable);
+  const std::size_t time = *history.find("time");
+  for (const std::size_t row : output_rows(history)) {
+    if (history.at(row, time) == 0.0) continue;
+    const std::array<double, 2> particle{history.at(row, x), history.at(row, y)};
+    const bool moves_x = fit.machine_moves_x();
+    fit.x.values.push_back(particle[0] + (moves_x ? plan.machine.addition(particle[1]) : 0.0));
+    fit.y.values.push_back(particle[1] + (moves_x ? 0.0 : plan.machine.addition(particle[0])));
+    fit.weights.push_back(1.0 / deviation_of_y(program, fit.y.values.back(), history.at(row, time)));
+  }
+  MeasuredCurve curve;
+  curve.end = fit.x.values.size();
+  curve.machine = plan.machine;
+  curve.scenario = program.scenario;
+  curve.driven = program.driven.column;
+  curve.control = program.driven.kind;
+  curve.start = program.driven.start;
+  fit.curves.push_back(std::move(curve));
+  return fit;
+}
+
+/// Takes the rows that the machine records of a run: derivatives of a calibration's response over the noise of y.
+void collect_recorded_rows(const Table& history, const ExperimentPlan& plan, const ExperimentProgram& program,
+                           ProgramInformation& information) {
+  const Calibration fit = recorded(history, plan, program);
+  const MeasuredCurve& curve = fit.curves.front();
+  const DataPath path = path_through(x_of(fit, curve));
+  Response response(fit, curve, path, path.at_points(y_of(fit, curve)));
+  LeastSquaresProblem problem;
+  problem.parameters.assign(fit.free.begin(), fit.free.end());
+  problem.residual_count = fit.weights.size();
+  problem.noise = information.noise = noise_of(fit);
+  problem.residuals = [&](std::span<const double> parameters, std::span<double> residuals) {
+    if (!response(parameters, residuals)) return false;
+    for (std::size_t row = 0; row < residuals.size(); ++row) residuals[row] *= fit.weights[row];
+    return true;
+  };
+  std::vector<double> expected(problem.residual_count);
+  if (!problem.residuals(plan.values, expected)) {
+    throw_fault(program.noise_at, fmt::format("a fit cannot follow the rows of program '{}': {}", program.name,
+                                              on_one_line(response.problem())));
+  }
+  for (const double value : expected) information.largest = std::max(information.largest, std::abs(value));
+  information.jacobian = residual_jacobian(problem, plan.values);
+}
+
 /// Takes the rows of a run that tell of the parameters: derivatives of the measured quantity over its noise.
 void collect_rows(const Table& history, const ExperimentPlan& plan, const ExperimentProgram& program,
                   ProgramInformation& information) {
@@ -259,12 +328,7 @@ void collect_rows(const Table& history, const ExperimentPlan& plan, const Experi
       ++information.left_out;
       continue;
     }
-    const double deviation = std::hypot(program.absolute_noise, program.relative_noise * value);
-    if (!(deviation > 0.0)) {
-      throw_fault(program.noise_at,
-                  fmt::format("{} = 0 at {:.6g} s has no relative noise; expected an absolute part, too",
-                              program.observable, history.at(row, time)));
-    }
+    const double deviation = deviation_of_y(program, value, history.at(row, time));
     information.largest = std::max(information.largest, std::abs(value) / deviation);
     rows.emplace_back(derivatives / deviation);
   }
@@ -287,12 +351,18 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
     information.notes.push_back("the run ends early: " + first.record.message);
   }
   const double duration = rough.row_count() > 0 ? rough.at(rough.row_count() - 1, *rough.find("time")) : 0.0;
-  scenario = driven_scenario(program, rough, information.notes);
-  scenario.sensitivities = program.scenario.sensitivities;
+  if (!plan.has_machine()) {
+    scenario = driven_scenario(program, rough, information.notes);
+    scenario.sensitivities = program.scenario.sensitivities;
+  }
   scenario.output = {.points = 0, .times = measured_instants(duration, program.points)};
   const Run run = run_scenario(scenario);
-  information.noise = run.integrator.is_direct() ? k_direct_noise : k_integrated_error;
-  collect_rows(run.record.history, plan, program, information);
+  if (plan.has_machine()) {
+    collect_recorded_rows(run.record.history, plan, program, information);
+  } else {
+    information.noise = run.integrator.is_direct() ? k_direct_noise : k_integrated_error;
+    collect_rows(run.record.history, plan, program, information);
+  }
   for (const std::string& warning : run.record.warnings) information.notes.push_back(warning);
   if (information.left_out > 0) {
     const auto kept = static_cast<std::size_t>(information.jacobian.rows());
@@ -323,10 +393,16 @@ ExpectedErrors expected_errors(const std::vector<FreeParameter>& free, std::span
   expected.uncertainty =
       uncertainty_of(problem, solution, jacobian / scale, solution.residuals.size(), k_level, 1.0 / scale);
   expected.log_determinant = expected.relative_variances = k_infinity;
-  if (std::ranges::count(expected.uncertainty.is_determined, false) > 0) return expected;
+  std::vector<Eigen::Index> own;  // indices of the scenario's parameters
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (free[k].key.path.starts_with(calibration::k_data)) continue;
+    if (!expected.uncertainty.is_determined[k]) return expected;
+    own.push_back(static_cast<Eigen::Index>(k));
+  }
   const Eigen::Map<const Eigen::VectorXd> sizes(values.data(), static_cast<Eigen::Index>(values.size()));
-  const Eigen::VectorXd inverse = sizes.cwiseInverse();
-  const Eigen::MatrixXd relative = inverse.asDiagonal() * expected.uncertainty.covariance * inverse.asDiagonal();
+  const Eigen::VectorXd inverse = sizes(own).cwiseInverse();
+  const Eigen::MatrixXd relative =
+      inverse.asDiagonal() * expected.uncertainty.covariance(own, own) * inverse.asDiagonal();
   expected.relative_variances = relative.trace();
   const Eigen::MatrixXd factor = relative.llt().matrixL();
   expected.log_determinant = 2.0 * factor.diagonal().array().log().sum();

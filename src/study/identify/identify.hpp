@@ -25,8 +25,9 @@ struct ProgramInformation {
   std::vector<std::string> notes;  ///< remarks on the run for the user
 };
 
-/// Runs a program and differentiates y at its measured instants.
-/// @throws ScenarioError where the standard deviation of y is zero in a row
+/// Runs a program and differentiates y at its measured instants. With a machine, rows are the sums of the particle's
+/// and the machine's displacements, and derivatives those of a calibration to such rows.
+/// @throws ScenarioError where the standard deviation of y is zero in a row, or a calibration cannot follow the rows
 [[nodiscard]] ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentProgram& program);
 
 /// Expected errors of the parameters. J has the rows of all programs and one for each prior; the noise is known:
@@ -34,13 +35,15 @@ struct ProgramInformation {
 ///   covariance = (J^T J)^-1
 struct ExpectedErrors {
   Uncertainty uncertainty;
-  double log_determinant = 0.0;     ///< natural logarithm of the determinant of the relative covariance (each parameter
-                                    ///< over its value); inf where a parameter is not determined
+  // Of the scenario's parameters, each over its value. The machine's are nuisance parameters, which widen the errors of
+  // the others (D_s-optimality; Atkinson, Donev and Tobias (2007)).
+  double log_determinant = 0.0;     ///< natural logarithm of the determinant of the relative covariance; inf where a
+                                    ///< parameter is not determined
   double relative_variances = 0.0;  ///< trace of the relative covariance; inf where a parameter is not determined
 };
 
 /// Errors of one fit to all programs together.
-/// @param values    true values of the parameters [SI], between their bounds, none zero
+/// @param values    true values of the parameters [SI], between their bounds; those of the scenario are not zero
 /// @param programs  may be empty: the priors alone count
 [[nodiscard]] ExpectedErrors expected_errors(const std::vector<FreeParameter>& free, std::span<const double> values,
                                              std::span<const ProgramInformation* const> programs);

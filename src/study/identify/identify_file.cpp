@@ -36,12 +36,28 @@ Keys plan_keys(bool scenario_is_table) {
     if (key.name == "scenario" || key.name == "free" || key.name == "prior") keys.push_back(std::move(key));
   }
   keys.push_back(key_of(Kind::text, "title", "what is planned", "\"granules, batch 12\""));
+  keys.push_back(key_of(Kind::table, "data", "the testing machine: its true offset and compliance", "[data]"));
   keys.push_back(required(key_of(Kind::tables, "program", "programs of loads that could be measured", "[[program]]")));
   return keys;
 }
 
-std::vector<ForeignKey> keys_of_calibrations() {
-  return {{"data", "belongs to a calibration file; expected [[program]]"}, {"fit", "belongs to a calibration file"}};
+/// Keys of the machine: those of measured data that no measurement gives.
+Keys plan_machine_keys(const calibration::DataKinds& kinds) {
+  Keys keys = calibration::data_keys(kinds);
+  std::erase_if(keys, [](const KeySpec& key) { return key.name != "offset" && key.name != "compliance"; });
+  return keys;
+}
+
+std::vector<ForeignKey> keys_of_calibrations() { return {{"fit", "belongs to a calibration file"}}; }
+
+/// Keys of measured data, which a plan does not have.
+std::vector<ForeignKey> keys_of_measured_data(const Keys& of_machine) {
+  std::vector<ForeignKey> foreign;
+  for (const KeySpec& key : calibration::data_keys({})) {
+    if (find_key(of_machine, key.name) != nullptr) continue;
+    foreign.push_back({key.name, "belongs to a calibration file; expected offset, compliance or both"});
+  }
+  return foreign;
 }
 
 Keys program_keys() {
@@ -105,6 +121,7 @@ class PlanReader {
     if (root.has("prior") && !made_.free.empty()) {
       calibration::read_priors(reading_, root, made_.scenario, made_.free);
     }
+    read_machine(root);
     faults_.throw_if_any();
     take_values(root);
     for (const Section::Origin& origin : root.tables("program", "[[program]]")) read_program(origin);
@@ -113,29 +130,47 @@ class PlanReader {
   }
 
  private:
-  /// Takes the values of the free numbers from the scenario; a fault if one of them cannot differentiate a history.
+  void read_machine(const Section& root) {
+    if (!root.has("data")) return;
+    const Section::Origin origin = root.table("data", "[data]");
+    const calibration::DataKinds kinds = calibration::kinds_of(*origin.table);
+    const Keys keys = plan_machine_keys(kinds);
+    const std::vector<ForeignKey> foreign = keys_of_measured_data(keys);
+    const Section data(reading_, origin, keys, foreign);
+    made_.machine = calibration::machine_in(reading_, data, kinds.compliance, file_.parent_path());
+  }
+
+  /// True value of a free number. @throws ScenarioError if the number cannot differentiate a history
+  [[nodiscard]] double value_of(const std::string& path) const {
+    if (path == calibration::k_offset) return made_.machine.offset;
+    if (path == calibration::k_compliance) return made_.machine.compliance;
+    return scenario_.with({override_of_keys({path})}).sensitivities.front().value;
+  }
+
+  /// Takes the values of the free numbers from the scenario and the machine.
   void take_values(const Section& root) {
     const Section::Origin free = root.table("free", "[free]");
     for (const FreeParameter& parameter : made_.free) {
       const std::string& path = parameter.key.path;
       const SourceLocation place = place_of(free.table->find(path)->first.source(), free.place);
-      if (path.starts_with(calibration::k_data)) {
-        faults_.add(place, fmt::format("'{}' is of a testing machine, which a plan does not have", path));
-        continue;
-      }
+      const bool is_of_machine = path.starts_with(calibration::k_data);
       try {
-        const double value = scenario_.with({override_of_keys({path})}).sensitivities.front().value;
+        const double value = value_of(path);
         made_.values.push_back(value);
         if (value >= parameter.lower && value <= parameter.upper) continue;
-        faults_.add(place,
-                    fmt::format("'{}' is {:.6g}{}{} in the scenario, which is not between the bounds", path,
-                                value / parameter.unit_factor, parameter.unit.empty() ? "" : " ", parameter.unit));
+        faults_.add(place, fmt::format("'{}' is {:.6g}{}{} in {}, which is not between the bounds", path,
+                                       value / parameter.unit_factor, parameter.unit.empty() ? "" : " ", parameter.unit,
+                                       is_of_machine ? "[data]" : "the scenario"));
       } catch (const ScenarioError& error) {
         faults_.add(place, on_one_line(error.faults().front().message));
       }
     }
     faults_.throw_if_any();
-    for (const FreeParameter& parameter : made_.free) paths_.push_back(parameter.key.path);
+    for (const FreeParameter& parameter : made_.free) {
+      if (!parameter.key.path.starts_with(calibration::k_data)) paths_.push_back(parameter.key.path);
+    }
+    if (paths_.empty()) faults_.add(free.place, "expected at least one free number of the scenario");
+    faults_.throw_if_any();
   }
 
   void read_program(const Section::Origin& origin) {
@@ -156,6 +191,7 @@ class PlanReader {
     const Measurable::Column* y = column_of(section, program.scenario);
     if (y == nullptr) return;
     program.observable = y->name;
+    if (made_.has_machine() && !take_drive(section, program)) return;
     const Section::Origin noise = section.table(calibration::k_noise, std::string(calibration::k_noise));
     if (noise.table->contains("column")) {
       return faults_.add(program.noise_at, "key 'column' is for data; expected absolute, relative or both");
@@ -185,6 +221,40 @@ class PlanReader {
       return false;
     }
     return take_lengths(program.scenario, place);
+  }
+
+  /// Takes the quantity along which a fit goes: the force if a displacement is measured, else the displacement.
+  /// @return false, with a fault, where no machine can measure y so
+  bool take_drive(const Section& section, ExperimentProgram& program) {
+    const SourceLocation place = section.has("y") ? section.value_place("y") : section.place();
+    const std::string& y = program.observable;
+    const bool is_displacement = y.ends_with(".displacement");
+    const bool is_force = y.ends_with(".force");
+    const std::string contact_class = is_displacement || is_force ? y.substr(0, y.rfind('.')) : std::string();
+    const bool is_driven = std::ranges::find(measurable_.driven, contact_class) != measurable_.driven.end();
+    const std::string column = is_driven ? contact_class + (is_displacement ? ".force" : ".displacement")
+                                         : measurable_.prefix() + "displacement";
+    const auto drive = std::ranges::find(measurable_.drives, column, &Measurable::Drive::column);
+    const bool has_own_steps = std::ranges::any_of(
+        program.scenario.loading.walls, [](const WallSpec& wall) { return !wall.is_fixed && !wall.steps.empty(); });
+    if (measurable_.driven.empty()) {
+      faults_.add(place, "a testing machine moves walls; this scenario has none that move");
+    } else if (has_own_steps) {
+      faults_.add(place, "a testing machine moves all walls alike; expected walls that are fixed or follow the steps");
+    } else if (has_compliance() && !is_driven) {
+      faults_.add(place, fmt::format("a compliance takes force and displacement of the same walls; y is '{}'", y));
+    } else {
+      program.driven = *drive;
+      return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool has_compliance() const {
+    return made_.machine.compliance > 0.0 || !made_.machine.forces.empty() ||
+           std::ranges::any_of(made_.free, [](const FreeParameter& parameter) {
+             return parameter.key.path == calibration::k_compliance;
+           });
   }
 
   /// Checks lengths: a testing machine prescribes displacements from first touch, whatever the radius and the gap are.
@@ -242,6 +312,12 @@ class PlanReader {
 };
 
 }  // namespace
+
+bool ExperimentPlan::has_machine() const noexcept {
+  return !machine.is_rigid() || std::ranges::any_of(free, [](const FreeParameter& parameter) {
+    return parameter.key.path.starts_with(calibration::k_data);
+  });
+}
 
 ExperimentPlan read_experiment_plan(const fs::path& file) {
   return parse_experiment_plan(read_named_text(file, "a plan of an experiment"));

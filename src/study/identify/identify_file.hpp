@@ -8,6 +8,8 @@
 #include "scenario/scenario.hpp"
 #include "scenario/text_file.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/calibrate/machine.hpp"
+#include "study/calibrate/replay.hpp"
 
 namespace monograin {
 
@@ -17,6 +19,7 @@ struct ExperimentProgram {
   std::vector<std::string> overrides;  ///< of the scenario, for this program
   CheckedScenario scenario;            ///< overridden; differentiates its history by the free numbers
   std::string observable;              ///< measured quantity y: "axial.force"
+  Measurable::Drive driven;            ///< quantity along which a fit goes; set if the plan has a machine
   int points = 100;                    ///< measured rows, evenly in time
   double absolute_noise = 0.0;         ///< constant part of the standard deviation of y [SI of y]
   double relative_noise = 0.0;         ///< part in proportion to |y|; the squares of both parts add
@@ -30,8 +33,13 @@ struct ExperimentPlan {
   std::string title;
   CheckedScenario scenario;
   std::vector<FreeParameter> free;          ///< parameters whose errors are asked for
-  std::vector<double> values;               ///< their values in the scenario, taken as true [SI]; none is zero
+  std::vector<double> values;               ///< their true values [SI]: those of the scenario, none of which is zero,
+                                            ///< and those of the machine
+  Machine machine;                          ///< with which all programs are measured
   std::vector<ExperimentProgram> programs;  ///< at least one
+
+  /// True if the machine adds, or may add, to the displacement.
+  [[nodiscard]] bool has_machine() const noexcept;
 };
 
 /// Reads and checks a plan and its scenario.

@@ -12,7 +12,9 @@
 #include "figure/page.hpp"
 #include "history/run.hpp"
 #include "scenario/units.hpp"
+#include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/text_table.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -27,13 +29,25 @@ std::string six_digits(double value, const std::string& unit = {}) {
   return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
 }
 
+/// Standard error over the value; nan if the value is zero, as an offset may be.
 double relative_error(const ExperimentPlan& plan, const ExpectedErrors& errors, std::size_t k) {
-  return errors.uncertainty.standard_error(k) / std::abs(plan.values[k]);
+  return plan.values[k] == 0.0 ? k_nan : errors.uncertainty.standard_error(k) / std::abs(plan.values[k]);
 }
 
+/// A standard error over the value; if the value is zero, the standard error itself.
 std::string shown_error(const ExperimentPlan& plan, const ExpectedErrors& errors, std::size_t k) {
   if (!errors.uncertainty.is_determined[k]) return "not determined";
+  const FreeParameter& parameter = plan.free[k];
+  if (plan.values[k] == 0.0) {
+    return fmt::format("{:.3g} {}", errors.uncertainty.standard_error(k) / parameter.unit_factor, parameter.unit);
+  }
   return fmt::format("{:.3g} %", 100.0 * relative_error(plan, errors, k));
+}
+
+std::string_view si_unit(const FreeParameter& parameter) {
+  if (parameter.key.path == calibration::k_compliance) return "m/N";
+  const std::string_view si = dimension_info(parameter.key.dimension).si;
+  return si.empty() ? "-" : si;
 }
 
 /// Names of the planned programs, in one text.
@@ -51,7 +65,7 @@ std::string planned_text(const ExperimentPlan& plan, const ExpectedErrors& error
     const FreeParameter& parameter = plan.free[k];
     const auto own = [&](double si) { return six_digits(si / parameter.unit_factor, parameter.unit); };
     rows.push_back({parameter.key.path, own(plan.values[k]), own(errors.uncertainty.standard_error(k)),
-                    shown_error(plan, errors, k)});
+                    plan.values[k] == 0.0 && errors.uncertainty.is_determined[k] ? "-" : shown_error(plan, errors, k)});
   }
   std::string text = fmt::format("planned: {}\n{}", planned_names(plan), aligned(rows));
   if (plan.free.size() < 2) return text;
@@ -136,7 +150,9 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
 std::string draw(const ExperimentPlan& plan, const std::vector<NamedErrors>& sets,
                  const std::filesystem::path& folder) {
   figure::Chart chart{.area_heading = "Program"};
-  for (std::size_t k = 0; k < plan.free.size(); ++k) chart.panels.push_back(error_panel(plan, sets, k));
+  for (std::size_t k = 0; k < plan.free.size(); ++k) {
+    if (plan.values[k] != 0.0) chart.panels.push_back(error_panel(plan, sets, k));
+  }
   chart.references = reference_texts(*find_model(plan.scenario.model));
   return figure::try_to_draw(chart, "expected errors of " + plan.name, folder / k_figure);
 }
@@ -158,9 +174,8 @@ Table identify_table(const ExperimentPlan& plan, const IdentifyResult& result) {
   std::vector<std::string> units;
   for (const NamedErrors& set : sets) names.push_back(set.name);
   for (const FreeParameter& parameter : plan.free) {
-    const std::string_view si = dimension_info(parameter.key.dimension).si;
     paths.push_back(parameter.key.path);
-    units.push_back(si.empty() ? "-" : std::string(si));
+    units.emplace_back(si_unit(parameter));
   }
   std::vector<Column> columns{{"with", "", names},         {"key", "", paths},         {"SI", "", units},
                               {"value", "", {}},           {"standard_error", "", {}}, {"relative", "-", {}},

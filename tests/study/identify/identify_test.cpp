@@ -158,6 +158,114 @@ noise = { absolute = "30 N" }
   EXPECT_NEAR(result.planned->uncertainty.correlation(0, 1), fit.uncertainty.correlation(0, 1), 0.02);
 }
 
+// --- the testing machine
+
+constexpr const char* k_machine_free = R"("data.offset" = { from = "-0.5 mm", to = "0.5 mm" }
+"data.compliance" = { from = 0, to = "200 nm/N" }
+)";
+
+constexpr const char* k_machine = R"([data]
+offset = "30 um"
+compliance = "20 nm/N"
+)";
+
+class MachinePlanTest : public PlanTest {
+ protected:
+  /// A fit to rows that the machine of k_machine records in the plan's first program.
+  /// @param columns  lines of [data] that name x and y
+  [[nodiscard]] CalibrationResult fit_with_noise(const ExperimentPlan& plan, const std::string& columns,
+                                                 const std::string& noise, bool is_noise_of_force) const {
+    CheckedScenario scenario = plan.programs.front().scenario;
+    scenario.sensitivities.clear();
+    scenario.output = {.points = 0, .times = {}};
+    const int points = plan.programs.front().points;
+    for (int k = 0; k < points; ++k) scenario.output.times.push_back(2.0 * (k + 0.5) / points);
+    const Table history = run_scenario(scenario).record.history;
+    std::mt19937 generator(5);
+    std::normal_distribution<double> noise_of_y(0.0, plan.programs.front().absolute_noise);
+    std::string data = "displacement[m],force[N]\n";
+    for (std::size_t row = 0; row < history.row_count(); ++row) {
+      if (history.at(row, *history.find("row")) != 0.0 || history.at(row, 0) == 0.0) continue;
+      const double force = history.at(row, *history.find("axial.force"));
+      const double displacement = history.at(row, *history.find("axial.displacement")) + 30e-6 + 20e-9 * force;
+      const double deviation = noise_of_y(generator);
+      data += fmt::format("{:.17g},{:.17g}\n", displacement + (is_noise_of_force ? 0.0 : deviation),
+                          force + (is_noise_of_force ? deviation : 0.0));
+    }
+    write_text(folder() / "d.csv", data);
+    write_text(folder() / "c.toml", std::string(k_mdr_free) + k_machine_free + "[data]\nfile = \"d.csv\"\n" + columns +
+                                        "noise = { absolute = \"" + noise + "\" }\n");
+    return calibrate(read_calibration(folder() / "c.toml"));
+  }
+
+  static void expect_same_errors(const IdentifyResult& planned, const CalibrationResult& fit) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(standard_error(planned, k) / fit.uncertainty.standard_error(k), 1.0, 0.02) << k;
+      for (std::size_t j = 0; j < k; ++j) {
+        EXPECT_NEAR(planned.planned->uncertainty.correlation(j, k), fit.uncertainty.correlation(j, k), 0.03);
+      }
+    }
+  }
+};
+
+TEST_F(MachinePlanTest, HasTheErrorsThatAFitOfFrameAndFirstTouchReports) {
+  const std::string program = replaced(k_mdr_program, "30 N", "3 N");
+  const ExperimentPlan plan = read(k_mdr, std::string(k_mdr_free) + k_machine_free + k_machine + program);
+  const IdentifyResult result = identify(plan);
+  expect_same_errors(result, fit_with_noise(plan, "x = \"displacement[m]\"\ny = \"force[N]\"\n", "3 N", true));
+  // An unloading hardly distinguishes a soft particle from a soft frame.
+  EXPECT_GT(standard_error(result, 0),
+            5.0 * standard_error(identify(read(k_mdr, std::string(k_mdr_free) + program)), 0));
+  const std::string text = identify_text(plan, result);
+  EXPECT_NE(text.find("data.offset              0.03 mm"), std::string::npos) << text;
+  EXPECT_NE(text.find("data.compliance          20 nm/N"), std::string::npos) << text;
+}
+
+TEST_F(MachinePlanTest, HasTheErrorsOfAFitAlongTheForce) {
+  const std::string forces = replaced(replaced(k_mdr, "displacement = \"0.2 R0\"", "force = \"30 kN\""),
+                                      "displacement = \"0.17 R0\"", "force = \"5 kN\"");
+  const std::string program = replaced(k_mdr_program, "noise = { absolute = \"30 N\" }",
+                                       "y = \"axial.displacement\"\nnoise = { absolute = \"2 um\" }");
+  const ExperimentPlan plan = read(forces, std::string(k_mdr_free) + k_machine_free + k_machine + program);
+  expect_same_errors(identify(plan),
+                     fit_with_noise(plan, "x = \"force[N]\"\ny = \"displacement[m]\"\n", "2 um", false));
+}
+
+TEST_F(MachinePlanTest, KnowsWhatAPriorSaysOfTheFrame) {
+  const std::string text = std::string(k_mdr_free) + k_machine_free + k_machine + k_mdr_program;
+  const IdentifyResult open = identify(read(k_mdr, text));
+  const IdentifyResult with_prior =
+      identify(read(k_mdr, text + "[prior]\n\"data.compliance\" = { normal = [\"20 nm/N\", \"0.1 nm/N\"] }\n"));
+  EXPECT_LT(standard_error(with_prior, 3), 0.1001e-9);
+  EXPECT_LT(standard_error(with_prior, 0), 0.5 * standard_error(open, 0));
+}
+
+TEST_F(MachinePlanTest, TakesTheOffsetForZeroAndLeavesItOutOfTheCriteria) {
+  const std::string offset = "\"data.offset\" = { from = \"-0.5 mm\", to = \"0.5 mm\" }\n";
+  const ExperimentPlan plan = read(k_mdr, std::string(k_mdr_free) + offset + k_mdr_program);
+  const IdentifyResult result = identify(plan);
+  const auto relative = [&](std::size_t k) { return std::pow(standard_error(result, k) / plan.values[k], 2); };
+  EXPECT_EQ(plan.values[2], 0.0);
+  EXPECT_NEAR(result.planned->relative_variances / (relative(0) + relative(1)), 1.0, 1e-9);
+  const std::string text = identify_text(plan, result);
+  EXPECT_NE(text.find("data.offset                0 mm"), std::string::npos) << text;
+}
+
+TEST_F(MachinePlanTest, RefusesAMachineThatCannotMeasureSo) {
+  const auto fault = [&](const std::string& plan) { return first_fault(k_mdr, plan); };
+  const std::string plan = std::string(k_mdr_free) + k_machine_free + k_machine + k_mdr_program;
+  EXPECT_EQ(fault(replaced(plan, "20 nm/N", "300 nm/N")),
+            "6:1: 'data.compliance' is 300 nm/N in [data], which is not between the bounds");
+  EXPECT_EQ(fault(replaced(plan, "offset = \"30 um\"", "file = \"d.csv\"")),
+            "8:1: key 'file' belongs to a calibration file; expected offset, compliance or both");
+  EXPECT_EQ(fault(replaced(plan, "points = 60", "y = \"axial.contact_radius\"")),
+            "13:5: a compliance takes force and displacement of the same walls; y is 'axial.contact_radius'");
+  EXPECT_EQ(fault(std::string("scenario = \"s.toml\"\n[free]\n") + k_machine_free + k_machine + k_mdr_program),
+            "2:1: expected at least one free number of the scenario");
+}
+
+// --- what the data cannot tell, and criteria
+
 TEST_F(PlanTest, SaysThatElasticLoadingDoesNotTellTheYieldStress) {
   const std::string scenario = replaced(replaced(k_mdr, "40 MPa", "80 MPa"), "0.2 R0", "0.0001 R0");
   const std::string elastic = replaced(scenario, "0.17 R0", "0.00005 R0");
@@ -373,8 +481,6 @@ TEST_F(PlanTest, RefusesWhatItDoesNotUnderstand) {
   EXPECT_EQ(fault("points", "set = [\"material.yuongs_modulus=60 GPa\"]\npoints").substr(0, 5), "7:7: ");
   EXPECT_EQ(fault("10 GPa", "100 GPa"),
             "3:1: 'material.youngs_modulus' is 50 GPa in the scenario, which is not between the bounds");
-  EXPECT_EQ(fault("[[program]]", "\"data.offset\" = { from = 0, to = \"1 mm\" }\n[[program]]"),
-            "4:1: 'data.offset' is of a testing machine, which a plan does not have");
   EXPECT_EQ(fault("scenario = \"s.toml\"", "scenario = \"s.toml\"\n[fit]\nloss = \"huber\""),
             "2:2: key 'fit' belongs to a calibration file");
   EXPECT_NE(fault("s.toml", "t.toml").find("1:12: scenario = \"t.toml\": there is no such file"), std::string::npos);
