@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
@@ -17,6 +18,8 @@ namespace monograin {
 namespace {
 
 constexpr double k_thousand = 1e3;
+constexpr double k_very_strong = 10.0;   // difference of the BIC (Kass and Raftery (1995))
+constexpr double k_clearly_less = 0.25;  // share of the cost that a cause leaves, if more than noise is left
 
 std::vector<std::size_t> rows_that_count(const Calibration& calibration) {
   std::vector<std::size_t> rows;
@@ -58,6 +61,48 @@ std::string_view other_unit(const MeasuredQuantity& quantity, double factor) {
   return found == units.end() ? std::string_view() : found->symbol;
 }
 
+/// Multiplies the measured displacement, with what the machine adds to it.
+void scale_displacement(Calibration& calibration, double factor) {
+  if (calibration.machine_moves_x()) {
+    scale(calibration.x, factor);
+  } else {
+    scale(calibration.y, factor);
+    for (double& weight : calibration.weights) weight /= factor;
+  }
+  for (MeasuredCurve& curve : calibration.curves) {
+    if (!calibration.machine_moves_x()) curve.noise.absolute *= factor;
+    curve.machine.offset *= factor;
+    curve.machine.compliance *= factor;
+    for (double& deflection : curve.machine.deflections) deflection *= factor;
+  }
+  for (FreeParameter& parameter : calibration.free) {
+    const std::string& path = parameter.key.path;
+    if (path != calibration::k_offset && path != calibration::k_compliance) continue;
+    parameter.lower *= factor;
+    parameter.upper *= factor;
+    if (parameter.start) *parameter.start *= factor;
+    if (!parameter.prior) continue;
+    parameter.prior->first *= factor;
+    if (parameter.prior->kind != Prior::Kind::lognormal) parameter.prior->second *= factor;
+  }
+}
+
+/// Adds the suspicions that another number of walls moves than the displacement is of. A factor of the force is none:
+/// it is one of modulus and yield stress.
+void add_numbers_of_walls(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
+  const MeasuredQuantity& moved = calibration.machine_moves_x() ? calibration.x : calibration.y;
+  if (!moved.observable.ends_with(".displacement")) return;
+  const char* name = calibration.machine_moves_x() ? "x" : "y";
+  const double present = calibration.curves.front().scales[calibration.machine_moves_x() ? 0 : 1];
+  for (const auto& [factor, clause] :
+       {std::pair(0.5, "the displacement, that of two walls, or of one wall towards another at rest"),
+        std::pair(2.0, "the displacement, half of that of a wall")}) {
+    Suspicion suspicion{fmt::format("{}: with scale = {:g} in {}", clause, factor * present, name), calibration};
+    scale_displacement(suspicion.changed, factor);
+    suspicions.push_back(std::move(suspicion));
+  }
+}
+
 void add_units(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
   for (const auto quantity : {&Calibration::x, &Calibration::y}) {
     for (const double factor : {k_thousand, 1.0 / k_thousand}) {
@@ -77,9 +122,12 @@ void add_units(const Calibration& calibration, std::vector<Suspicion>& suspicion
 }
 
 void add_signs(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
-  for (const auto& [of_x, of_y, clause] : {std::tuple(true, true, "the signs of x and y: with both reversed"),
-                                           std::tuple(true, false, "the sign of x: with it reversed"),
-                                           std::tuple(false, true, "the sign of y: with it reversed")}) {
+  const std::array<double, 2>& scales = calibration.curves.front().scales;
+  const std::string x = fmt::format("scale = {:g} in x", -scales[0]);
+  const std::string y = fmt::format("scale = {:g} in y", -scales[1]);
+  for (const auto& [of_x, of_y, clause] :
+       {std::tuple(true, true, fmt::format("the signs of x and y: with {} and {}", x, y)),
+        std::tuple(true, false, "the sign of x: with " + x), std::tuple(false, true, "the sign of y: with " + y)}) {
     Suspicion suspicion{clause, calibration};
     if (of_x) scale(suspicion.changed.x, -1.0);
     if (of_y) scale(suspicion.changed.y, -1.0);
@@ -140,6 +188,7 @@ std::string likely_cause(const Calibration& calibration, const FitTrial& fit) {
   add_units(calibration, suspicions);
   add_signs(calibration, suspicions);
   add_offset(calibration, suspicions);
+  add_numbers_of_walls(calibration, suspicions);
   double best = k_least_explained;
   std::string cause;
   for (const Suspicion& suspicion : suspicions) {
@@ -156,9 +205,33 @@ std::string likely_cause(const Calibration& calibration, const FitTrial& fit) {
   return cause;
 }
 
+std::string doubt_displacement(const Calibration& calibration, const CalibrationResult& result, const FitTrial& fit) {
+  if (!result.residual_tests || result.residual_tests->are_independent()) return {};
+  std::vector<Suspicion> suspicions;
+  add_numbers_of_walls(calibration, suspicions);
+  double least = 1.0;
+  std::string doubt;
+  for (const Suspicion& suspicion : suspicions) {
+    const TrialFit trial = fit(suspicion.changed);
+    const double left = (1.0 - trial.explained) / (1.0 - result.explained);          // share of the cost
+    const double difference = -static_cast<double>(result.points) * std::log(left);  // of the BIC, if that is noise
+    const bool is_clear = trial.is_noise ? difference > k_very_strong : left < k_clearly_less;
+    if (!is_clear || !(left < least)) continue;
+    least = left;
+    doubt = fmt::format("the residuals are not noise; likely cause: {}, they are {:.2g} times as large{}",
+                        suspicion.clause, std::sqrt(left), trial.is_noise ? ", and noise" : "");
+  }
+  if (doubt.empty()) return {};
+  return doubt + "; a scenario whose walls move as those of the machine needs no scale";
+}
+
 std::vector<std::string> warnings_of(const Calibration& calibration, const CalibrationResult& result,
                                      const FitTrial& fit) {
-  if (result.uncertainty.degrees_of_freedom == 0 || result.explained >= k_least_explained) return {};
+  if (result.uncertainty.degrees_of_freedom == 0) return {};
+  if (result.explained >= k_least_explained) {
+    std::string doubt = doubt_displacement(calibration, result, fit);
+    return doubt.empty() ? std::vector<std::string>() : std::vector{std::move(doubt)};
+  }
   // A robust loss hardly tells the constant from a fit where its scale is as small as the noise.
   if (calibration.loss.kind != Loss::linear && result.r_squared >= k_least_explained) return {};
   if (is_constant(calibration)) {

@@ -22,13 +22,20 @@ namespace monograin {
 struct TrialFit {
   double explained = 0.0;  ///< see explained_share; nan where there is no fit
   std::vector<double> parameters;
+  bool is_noise = false;  ///< no test says that the residuals are not independent
 };
 using FitTrial = std::function<TrialFit(const Calibration&)>;
 
 /// Finds a change of the data that makes the fit good: units of x or y a thousand times larger or smaller, other signs,
-/// a first touch elsewhere. Tries each change alone.
+/// a first touch elsewhere, half or twice the displacement. Tries each change alone.
 /// @return a clause without capital and full stop; empty if no change makes the fit explain k_least_explained
 [[nodiscard]] std::string likely_cause(const Calibration& calibration, const FitTrial& fit);
+
+/// Finds that half or twice the displacement fits clearly better than a good fit whose residuals are not noise: they
+/// are noise then, and the difference of the BIC is very strong, or they are less than half as large.
+/// @return a clause; empty if there is no reason to doubt the displacement
+[[nodiscard]] std::string doubt_displacement(const Calibration& calibration, const CalibrationResult& result,
+                                             const FitTrial& fit);
 
 /// Warnings that a fit is bad, with the likely cause; empty if it is good.
 [[nodiscard]] std::vector<std::string> warnings_of(const Calibration& calibration, const CalibrationResult& result,

@@ -155,8 +155,11 @@ class Fit {
   /// Share of the data that the best fit explains.
   TrialFit explain() {
     const auto solution = search();
-    if (!solution) return {k_nan, {}};
-    return {explained_share(calibration_, weights_, cost_of_data(*solution)), solution->parameters};
+    if (!solution) return {.explained = k_nan, .parameters = {}};
+    const auto tests = test_residuals(std::span(solution->residuals).first(rows_.size()));
+    return {.explained = explained_share(calibration_, weights_, cost_of_data(*solution)),
+            .parameters = solution->parameters,
+            .is_noise = !tests || tests->are_independent()};
   }
 
   /// Response of the best fit in every row; none if there is no fit.

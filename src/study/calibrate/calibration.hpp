@@ -58,13 +58,14 @@ struct MeasuredCurve {
   std::string file;
   std::string text;
   TableLayout layout;
-  std::array<std::size_t, 2> columns{};  ///< of x and y in the file, from 1
-  std::vector<std::size_t> left_out;     ///< lines in which one of the columns has no number
-  NoiseParts noise;                      ///< of y; zero if it is not known, or if a column has it
-  Machine machine;                       ///< as given, without its free numbers
-  std::vector<std::string> overrides;    ///< of the scenario, for this curve
-  CheckedScenario scenario;              ///< with these overrides; has variants if the radius is free
-  std::string driven;                    ///< observable that x holds
+  std::array<std::size_t, 2> columns{};    ///< of x and y in the file, from 1
+  std::array<double, 2> scales{1.0, 1.0};  ///< factors of the numbers in these columns
+  std::vector<std::size_t> left_out;       ///< lines in which one of the columns has no number
+  NoiseParts noise;                        ///< of y; zero if it is not known, or if a column has it
+  Machine machine;                         ///< as given, without its free numbers
+  std::vector<std::string> overrides;      ///< of the scenario, for this curve
+  CheckedScenario scenario;                ///< with these overrides; has variants if the radius is free
+  std::string driven;                      ///< observable that x holds
   Step::Kind control = Step::Kind::displacement;
   double start = 0.0;  ///< of x, before the first step [SI]
 };
@@ -96,7 +97,7 @@ struct Calibration {
   [[nodiscard]] Machine machine_of(const MeasuredCurve& curve, std::span<const double> parameters) const;
   /// True if the size of the noise is given, so that weights are one over standard deviations.
   [[nodiscard]] bool knows_noise() const noexcept;
-  /// True if the machine adds, or may add, to the displacement of any curve.
+  /// True if the machine adds, or may add, to displacement or force of any curve.
   [[nodiscard]] bool has_machine() const noexcept;
   /// True if the machine adds to x rather than to y: the quantity that is a displacement.
   [[nodiscard]] bool machine_moves_x() const noexcept { return x.observable.ends_with(".displacement"); }

@@ -162,6 +162,7 @@ class CalibrationReader {
     if (!measured) return;
     curve.machine = machine_in(reading_, data, kinds.compliance, file_.parent_path());
     curve.overrides = data.texts("set");
+    curve.scales = {specs[0].scale, specs[1].scale};
     take_scenario(data, curve);
     const MeasuredQuantity x = quantity(specs[0], measured->columns[0]);
     const MeasuredQuantity y = quantity(specs[1], measured->columns[1]);
@@ -295,7 +296,7 @@ class CalibrationReader {
     result.unit_factor = *factor;
     result.observable = found->name;
     result.values = column.values;
-    for (double& value : result.values) value *= *factor;
+    for (double& value : result.values) value *= *factor * spec.scale;
     return result;
   }
 
@@ -367,9 +368,12 @@ class CalibrationReader {
     const auto is_deflecting = [](const MeasuredCurve& curve) {
       return curve.machine.compliance > 0.0 || !curve.machine.forces.empty();
     };
-    const auto has_offset = [](const MeasuredCurve& curve) { return curve.machine.offset != 0.0; };
     const bool has_compliance = std::ranges::any_of(made_.curves, is_deflecting);
-    for (const auto& [path, is_given] : {std::pair(k_offset, std::ranges::any_of(made_.curves, has_offset)),
+    const bool has_offset =
+        std::ranges::any_of(made_.curves, [](const MeasuredCurve& curve) { return curve.machine.offset != 0.0; });
+    const bool has_force_offset =
+        std::ranges::any_of(made_.curves, [](const MeasuredCurve& curve) { return curve.machine.force_offset != 0.0; });
+    for (const auto& [path, is_given] : {std::pair(k_offset, has_offset), std::pair(k_force_offset, has_force_offset),
                                          std::pair(k_compliance, has_compliance)}) {
       if (is_given && is_free(path)) {
         faults_.add(root.value_place("free"),
@@ -387,9 +391,12 @@ class CalibrationReader {
       faults_.add(
           root.value_place("data"),
           fmt::format("a compliance takes force and displacement of the same walls; x and y are '{}' and '{}'", x, y));
-    } else if ((std::ranges::any_of(made_.curves, has_offset) || is_free(k_offset)) && !has_displacement) {
+    } else if ((has_offset || is_free(k_offset)) && !has_displacement) {
       faults_.add(root.value_place("data"),
                   fmt::format("an offset takes a displacement; x and y are '{}' and '{}'", x, y));
+    } else if ((has_force_offset || is_free(k_force_offset)) && !x.ends_with(".force") && !y.ends_with(".force")) {
+      faults_.add(root.value_place("data"),
+                  fmt::format("a force_offset takes a force; x and y are '{}' and '{}'", x, y));
     }
   }
 
@@ -545,6 +552,7 @@ Machine Calibration::machine_of(const MeasuredCurve& curve, std::span<const doub
   Machine machine = curve.machine;
   for (std::size_t k = 0; k < free.size(); ++k) {
     if (free[k].key.path == k_offset) machine.offset = parameters[k];
+    if (free[k].key.path == k_force_offset) machine.force_offset = parameters[k];
     if (free[k].key.path == k_compliance) machine.compliance = parameters[k];
   }
   return machine;
@@ -552,7 +560,7 @@ Machine Calibration::machine_of(const MeasuredCurve& curve, std::span<const doub
 
 bool Calibration::has_machine() const noexcept {
   const auto is_of_machine = [](const FreeParameter& parameter) { return parameter.key.path.starts_with(k_data); };
-  const auto has_own = [](const MeasuredCurve& curve) { return !curve.machine.is_rigid(); };
+  const auto has_own = [](const MeasuredCurve& curve) { return !curve.machine.adds_nothing(); };
   return std::ranges::any_of(free, is_of_machine) || std::ranges::any_of(curves, has_own);
 }
 

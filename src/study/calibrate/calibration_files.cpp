@@ -88,8 +88,12 @@ Json data_json(const Calibration& calibration) {
   Json list = Json::array();
   for (const MeasuredCurve& curve : calibration.curves) {
     const TableLayout& layout = curve.layout;
-    const auto column = [&layout](std::size_t number) {
-      return Json({{"number", number}, {"heading", layout.headings[number - 1]}, {"unit", layout.units[number - 1]}});
+    const auto column = [&](std::size_t k) {
+      const std::size_t number = curve.columns[k];
+      return Json({{"number", number},
+                   {"heading", layout.headings[number - 1]},
+                   {"unit", layout.units[number - 1]},
+                   {"scale", curve.scales[k]}});
     };
     list.push_back({{"file", curve.file},
                     {"encoding", layout.encoding},
@@ -97,8 +101,8 @@ Json data_json(const Calibration& calibration) {
                     {"decimal", std::string(1, layout.decimal)},
                     {"heading_line", layout.heading_line},
                     {"unit_line", layout.unit_line},
-                    {"x", column(curve.columns[0])},
-                    {"y", column(curve.columns[1])},
+                    {"x", column(0)},
+                    {"y", column(1)},
                     {"rows", curve.end - curve.begin},
                     {"rows_left_out", curve.left_out.size()},
                     {"text", curve.text}});

@@ -92,6 +92,12 @@ Keys data_keys(const DataKinds& kinds) {
        .dimension = Dimension::length,
        .range = machine_keys().front().range,
        .example = "\"0.1 mm\""},
+      {.name = "force_offset",
+       .meaning = "force that the load cell shows without a load",
+       .kind = Kind::quantity,
+       .dimension = Dimension::force,
+       .range = machine_keys()[1].range,
+       .example = "\"0.8 N\""},
       {.name = "compliance",
        .meaning = "of the machine's frame: its own displacement over the force, or a table of it",
        .kind = kinds.compliance,
@@ -103,8 +109,13 @@ Keys data_keys(const DataKinds& kinds) {
 Keys column_keys(Kind column) {
   return {
       column_key("column", "heading of the column, or its number", column, "\"gamma_over_2R[-]\""),
-      required(key_of(Kind::text, "quantity", "what it holds", "\"displacement\"")),
+      key_of(Kind::text, "quantity", "what it holds [what its heading says]", "\"displacement\""),
       key_of(Kind::text, "unit", "its unit [that of the file]", "\"R0\""),
+      quantity_key({"scale",
+                    "factor of its numbers; -1 reverses their sign",
+                    Dimension::none,
+                    {.lower = -1e9, .upper = 1e9},
+                    1.0}),
   };
 }
 
@@ -120,6 +131,8 @@ Keys deflection_keys() {
 std::vector<NumberKey> machine_keys() {
   return {{std::string(k_offset), "displacement of the machine at first touch", Dimension::length,
            plausible_range(Dimension::length, {})},
+          {std::string(k_force_offset), "force that the load cell shows without a load", Dimension::force,
+           plausible_range(Dimension::force, {})},
           {std::string(k_compliance), "of the machine's frame [m/N]", Dimension::none, {.lower = 0.0, .upper = 1e6}}};
 }
 

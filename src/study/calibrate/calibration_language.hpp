@@ -23,7 +23,8 @@ inline constexpr std::array<std::string_view, 2> k_decimals{".", ","};
 inline constexpr std::array<std::string_view, 2> k_unit_rows{"row", "none"};
 inline constexpr std::string_view k_data = "data.";          ///< prefix of the machine's keys among the free parameters
 inline constexpr std::string_view k_offset = "data.offset";  ///< as a free parameter
-inline constexpr std::string_view k_compliance = "data.compliance";  ///< as a free parameter
+inline constexpr std::string_view k_force_offset = "data.force_offset";  ///< as a free parameter
+inline constexpr std::string_view k_compliance = "data.compliance";      ///< as a free parameter
 
 /// Keys of the calibration as a whole. @param scenario_is_table  true if the scenario stands in the file itself
 [[nodiscard]] Keys root_keys(bool scenario_is_table, bool data_is_list);
@@ -43,7 +44,7 @@ struct DataKinds {
 [[nodiscard]] Keys column_keys(KeySpec::Kind column);
 /// Keys of the free parameters, out of a scenario's numbers.
 [[nodiscard]] Keys free_keys(const std::vector<NumberKey>& numbers);
-/// Numbers of the machine, which may be free, too: first touch and the compliance of its frame.
+/// Numbers of the machine, which may be free, too: first touch, zero of the load cell, compliance of its frame.
 [[nodiscard]] std::vector<NumberKey> machine_keys();
 /// Keys of one free parameter. @param from, to, start  quantity; text for a compliance with its unit
 [[nodiscard]] Keys bounds_keys(const NumberKey& number, const std::array<KeySpec::Kind, 3>& kinds);

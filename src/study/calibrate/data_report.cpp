@@ -121,10 +121,13 @@ std::string label_of(const DataAxis& axis) {
   return is_bare ? name : fmt::format("{} [{}]", name, figure::verbatim_text(axis.unit));
 }
 
-/// Meaning of a column: "axial.displacement, 1 mm = 0.001 m".
-std::string meaning_of(const MeasuredQuantity& quantity) {
-  if (quantity.unit_factor == 1.0) return quantity.observable;
-  return fmt::format("{}, 1 {} = {:g} {}", quantity.observable, quantity.unit, quantity.unit_factor, quantity.si);
+/// Meaning of a column: "axial.displacement, 1 mm = 0.001 m, times -1".
+std::string meaning_of(const MeasuredQuantity& quantity, double scale) {
+  std::string text = quantity.observable;
+  if (quantity.unit_factor != 1.0) {
+    text += fmt::format(", 1 {} = {:g} {}", quantity.unit, quantity.unit_factor, quantity.si);
+  }
+  return scale == 1.0 ? text : fmt::format("{}, times {:g}", text, scale);
 }
 
 /// Curve of all loading branches, or of all unloading ones; nan between them breaks the line.
@@ -242,10 +245,12 @@ std::vector<DataReport> reports_of(const Calibration& calibration) {
                         calibration.lines.begin() + static_cast<std::ptrdiff_t>(curve.end));
     report.left_out = curve.left_out.size();
     report.branches = branches_of(report.x.values);
-    report.remarks = {fmt::format("x is {}", meaning_of(calibration.x)),
-                      fmt::format("y is {}", meaning_of(calibration.y))};
+    report.remarks = {fmt::format("x is {}", meaning_of(calibration.x, curve.scales[0])),
+                      fmt::format("y is {}", meaning_of(calibration.y, curve.scales[1]))};
     const Machine& machine = curve.machine;
     if (machine.offset != 0.0) report.remarks.push_back(fmt::format("data.offset is {:g} m", machine.offset));
+    if (machine.force_offset != 0.0)
+      report.remarks.push_back(fmt::format("data.force_offset is {:g} N", machine.force_offset));
     if (machine.compliance != 0.0)
       report.remarks.push_back(fmt::format("data.compliance is {:g} m/N", machine.compliance));
     if (!machine.forces.empty()) report.remarks.push_back("data.compliance is a table");

@@ -129,9 +129,12 @@ ColumnSpec column_spec(Reading& reading, const Section& data, std::string_view k
   const bool is_number = column_kind == KeySpec::Kind::integer;
   const Keys keys = column_keys(is_number ? column_kind : KeySpec::Kind::text);
   const Section column(reading, origin, keys);
+  const double scale = column.number("scale").value_or(1.0);
+  if (scale == 0.0) reading.faults.add(column.value_place("scale"), "scale = 0: expected a factor other than zero");
   return {.request = request_of(column, "column", column_kind),
           .quantity = column.text("quantity"),
           .unit = column.text("unit"),
+          .scale = scale == 0.0 ? 1.0 : scale,
           .quantity_at = column.value_place("quantity"),
           .unit_at = column.value_place(column.has("unit") ? "unit" : "column")};
 }
@@ -173,7 +176,8 @@ ParsedCompliance compliance_in(Reading& reading, const Section& section, std::st
 }
 
 Machine machine_in(Reading& reading, const Section& data, KeySpec::Kind kind, const fs::path& folder) {
-  Machine machine{.offset = data.number("offset").value_or(0.0)};
+  Machine machine{.offset = data.number("offset").value_or(0.0),
+                  .force_offset = data.number("force_offset").value_or(0.0)};
   if (!data.has("compliance")) return machine;
   if (kind == KeySpec::Kind::quantity) machine.compliance = data.number("compliance").value_or(0.0);
   if (kind == KeySpec::Kind::text) machine.compliance = compliance_in(reading, data, "compliance").value.value_or(0.0);

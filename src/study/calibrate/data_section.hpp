@@ -27,6 +27,7 @@ struct ColumnSpec {
   ColumnRequest request;
   std::string quantity{};  ///< empty: that of the column's heading
   std::string unit{};      ///< empty: that of the column's heading
+  double scale = 1.0;      ///< factor of its numbers
   SourceLocation quantity_at;
   SourceLocation unit_at;
 };
@@ -41,7 +42,7 @@ struct ColumnSpec {
 /// Reads a compliance written with its unit, and reports a fault if the text is no compliance.
 [[nodiscard]] ParsedCompliance compliance_in(Reading& reading, const Section& section, std::string_view key);
 
-/// Reads the machine: offset, compliance and deflections. @param folder  to which the path of a table is relative
+/// Reads the machine: offsets, compliance and deflections. @param folder  to which the path of a table is relative
 [[nodiscard]] Machine machine_in(Reading& reading, const Section& data, KeySpec::Kind kind,
                                  const std::filesystem::path& folder);
 

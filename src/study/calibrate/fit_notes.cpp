@@ -91,7 +91,8 @@ void note_residual_tests(const Calibration& calibration, const CalibrationResult
                         std::sqrt((1.0 + tests.correlation) / (1.0 - tests.correlation)));
   }
   if (!calibration.has_machine() && calibration.machine_moves_x()) {
-    note += "; whether it is the machine, a fit shows in which data.offset and data.compliance are free";
+    note +=
+        "; whether it is the machine, a fit shows in which data.offset, data.force_offset and data.compliance are free";
   }
   notes.push_back(std::move(note));
 }
@@ -171,7 +172,8 @@ void note_correlations(const Calibration& calibration, const CalibrationResult& 
       if (!(std::abs(correlation) > k_high_correlation)) continue;
       // The note names the parameter that the data determine less well.
       const auto relative = [&](std::size_t k) {
-        if (calibration.free[k].key.path == calibration::k_offset) return 0.0;  // zero is an ordinary offset
+        const std::string& path = calibration.free[k].key.path;
+        if (path == calibration::k_offset || path == calibration::k_force_offset) return 0.0;  // may well be zero
         return result.uncertainty.standard_error(k) / std::abs(result.solution.parameters[k]);
       };
       const std::size_t poor = relative(i) > relative(j) ? i : j;

@@ -1,4 +1,4 @@
-/// The testing machine between displacement sensor and particle: its first touch, and its frame's deflection.
+/// The testing machine between sensors and particle: its first touch, its frame's deflection, its load cell's zero.
 #pragma once
 
 #include <functional>
@@ -10,15 +10,19 @@
 
 namespace monograin {
 
-/// measured displacement = displacement at the particle + offset + compliance * force + deflection(force).
+/// measured displacement = displacement at the particle + offset + compliance * force + deflection(force),
+/// measured force = force of the particle + force_offset.
 struct Machine {
   double offset = 0.0;                ///< displacement at first touch [m]
+  double force_offset = 0.0;          ///< shown without a load [N]
   double compliance = 0.0;            ///< [m/N]
   std::vector<double> forces{};       ///< of a table of deflections, ascending [N]; empty: there is none
   std::vector<double> deflections{};  ///< [m]
 
-  [[nodiscard]] bool is_rigid() const noexcept { return offset == 0.0 && compliance == 0.0 && forces.empty(); }
-  /// Displacement [m] that the machine adds to that of the particle under a force. Beyond its ends, a table of
+  [[nodiscard]] bool adds_nothing() const noexcept {
+    return offset == 0.0 && force_offset == 0.0 && compliance == 0.0 && forces.empty();
+  }
+  /// Displacement [m] that the machine adds to that of the particle under its force. Beyond its ends, a table of
   /// deflections is continued by its first and last pieces.
   [[nodiscard]] double addition(double force) const noexcept;
 };

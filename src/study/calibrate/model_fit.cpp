@@ -32,8 +32,9 @@ const CurveProcedure* procedure_of(const Calibration& calibration) {
 bool is_force_curve(const Calibration& calibration) {
   return calibration.curves.size() == 1 && calibration.curves.front().control == Step::Kind::displacement &&
          calibration.y.observable.ends_with(".force") && class_of(calibration.x) == class_of(calibration.y) &&
-         !is_free(calibration, k_radius_key) && !is_free(calibration, calibration::k_offset) &&
-         !is_free(calibration, calibration::k_compliance) &&
+         !is_free(calibration, k_radius_key) &&
+         std::ranges::none_of(calibration.free,
+                              [](const auto& free) { return free.key.path.starts_with(calibration::k_data); }) &&
          std::ranges::none_of(procedure_of(calibration)->fixed_keys,
                               [&](std::string_view key) { return is_free(calibration, key); });
 }
@@ -45,10 +46,11 @@ XyCurve normalised(const Calibration& calibration) {
   const Machine& machine = calibration.curves.front().machine;
   XyCurve curve;
   for (std::size_t row = 0; row < calibration.x.values.size(); ++row) {
-    const double displacement = calibration.x.values[row] - machine.addition(calibration.y.values[row]);
+    const double force = calibration.y.values[row] - machine.force_offset;
+    const double displacement = calibration.x.values[row] - machine.addition(force);
     if (!(calibration.weights[row] > 0.0) || displacement < 0.0) continue;
     curve.x.push_back(displacement / radius);
-    curve.y.push_back(calibration.y.values[row] / force_unit);
+    curve.y.push_back(force / force_unit);
   }
   return curve;
 }

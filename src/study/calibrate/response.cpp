@@ -59,14 +59,18 @@ bool Response::operator()(std::span<const double> parameters, std::span<double> 
 /// Finds the response at the points of the path.
 bool Response::run(const Machine& machine) {
   if (calibration_.machine_moves_x()) {
-    if (!machine.is_rigid()) return run_in_series(machine);
+    if (!machine.adds_nothing()) return run_in_series(machine);
     if (std::exchange(is_moved_, false)) replay_.follow(path().x);
     particle_ = path().x;
     return replay_.run(response_);
   }
+  std::vector<double> forces = path().x;
+  for (double& force : forces) force -= machine.force_offset;
+  if (machine.force_offset != 0.0 || is_moved_) replay_.follow(forces);
+  is_moved_ = machine.force_offset != 0.0;
   if (!replay_.run(response_)) return false;
   particle_ = response_;
-  for (std::size_t i = 0; i < response_.size(); ++i) response_[i] += machine.addition(path().x[i]);
+  for (std::size_t i = 0; i < response_.size(); ++i) response_[i] += machine.addition(forces[i]);
   return true;
 }
 
@@ -77,7 +81,7 @@ bool Response::run_in_series(const Machine& machine) {
   particle_ = x;
   double largest = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    particle_[i] -= machine.addition(measured_[i]);
+    particle_[i] -= machine.addition(measured_[i] - machine.force_offset);
     largest = std::max(largest, std::abs(x[i]));
   }
   bool has_run = true;
@@ -86,9 +90,12 @@ bool Response::run_in_series(const Machine& machine) {
     has_run = replay_.run(forces);
     return has_run;
   };
-  if (put_in_series(machine, x, forces_of, noise_ * largest, particle_, response_)) return true;
-  if (has_run) problem_ = "no displacements of the particle and of the machine add up to those measured";
-  return false;
+  if (!put_in_series(machine, x, forces_of, noise_ * largest, particle_, response_)) {
+    if (has_run) problem_ = "no displacements of the particle and of the machine add up to those measured";
+    return false;
+  }
+  for (double& force : response_) force += machine.force_offset;
+  return true;
 }
 
 }  // namespace monograin

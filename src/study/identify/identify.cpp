@@ -255,10 +255,12 @@ Calibration recorded(const Table& history, const ExperimentPlan& plan, const Exp
   const std::size_t time = *history.find("time");
   for (const std::size_t row : output_rows(history)) {
     if (history.at(row, time) == 0.0) continue;
-    const std::array<double, 2> particle{history.at(row, x), history.at(row, y)};
     const bool moves_x = fit.machine_moves_x();
-    fit.x.values.push_back(particle[0] + (moves_x ? plan.machine.addition(particle[1]) : 0.0));
-    fit.y.values.push_back(particle[1] + (moves_x ? 0.0 : plan.machine.addition(particle[0])));
+    const double force = history.at(row, moves_x ? y : x);
+    const double displacement = history.at(row, moves_x ? x : y) + plan.machine.addition(force);
+    const double shown_force = force + plan.machine.force_offset;
+    fit.x.values.push_back(moves_x ? displacement : shown_force);
+    fit.y.values.push_back(moves_x ? shown_force : displacement);
     fit.weights.push_back(1.0 / deviation_of_y(program, fit.y.values.back(), history.at(row, time)));
   }
   MeasuredCurve curve;

@@ -36,7 +36,7 @@ Keys plan_keys(bool scenario_is_table) {
     if (key.name == "scenario" || key.name == "free" || key.name == "prior") keys.push_back(std::move(key));
   }
   keys.push_back(key_of(Kind::text, "title", "what is planned", "\"granules, batch 12\""));
-  keys.push_back(key_of(Kind::table, "data", "the testing machine: its true offset and compliance", "[data]"));
+  keys.push_back(key_of(Kind::table, "data", "the testing machine: its true offsets and compliance", "[data]"));
   keys.push_back(required(key_of(Kind::tables, "program", "programs of loads that could be measured", "[[program]]")));
   return keys;
 }
@@ -44,7 +44,9 @@ Keys plan_keys(bool scenario_is_table) {
 /// Keys of the machine: those of measured data that no measurement gives.
 Keys plan_machine_keys(const calibration::DataKinds& kinds) {
   Keys keys = calibration::data_keys(kinds);
-  std::erase_if(keys, [](const KeySpec& key) { return key.name != "offset" && key.name != "compliance"; });
+  std::erase_if(keys, [](const KeySpec& key) {
+    return key.name != "offset" && key.name != "force_offset" && key.name != "compliance";
+  });
   return keys;
 }
 
@@ -55,7 +57,7 @@ std::vector<ForeignKey> keys_of_measured_data(const Keys& of_machine) {
   std::vector<ForeignKey> foreign;
   for (const KeySpec& key : calibration::data_keys({})) {
     if (find_key(of_machine, key.name) != nullptr) continue;
-    foreign.push_back({key.name, "belongs to a calibration file; expected offset, compliance or both"});
+    foreign.push_back({key.name, "belongs to a calibration file; expected offset, force_offset or compliance"});
   }
   return foreign;
 }
@@ -143,6 +145,7 @@ class PlanReader {
   /// True value of a free number. @throws ScenarioError if the number cannot differentiate a history
   [[nodiscard]] double value_of(const std::string& path) const {
     if (path == calibration::k_offset) return made_.machine.offset;
+    if (path == calibration::k_force_offset) return made_.machine.force_offset;
     if (path == calibration::k_compliance) return made_.machine.compliance;
     return scenario_.with({override_of_keys({path})}).sensitivities.front().value;
   }
@@ -241,8 +244,10 @@ class PlanReader {
       faults_.add(place, "a testing machine moves walls; this scenario has none that move");
     } else if (has_own_steps) {
       faults_.add(place, "a testing machine moves all walls alike; expected walls that are fixed or follow the steps");
-    } else if (has_compliance() && !is_driven) {
-      faults_.add(place, fmt::format("a compliance takes force and displacement of the same walls; y is '{}'", y));
+    } else if (adds_to_force() && !is_driven) {
+      faults_.add(
+          place,
+          fmt::format("compliance and force_offset take force and displacement of the same walls; y is '{}'", y));
     } else {
       program.driven = *drive;
       return true;
@@ -250,10 +255,13 @@ class PlanReader {
     return false;
   }
 
-  [[nodiscard]] bool has_compliance() const {
-    return made_.machine.compliance > 0.0 || !made_.machine.forces.empty() ||
+  /// True if the machine needs the force, or may need it.
+  [[nodiscard]] bool adds_to_force() const {
+    const Machine& machine = made_.machine;
+    return machine.force_offset != 0.0 || machine.compliance > 0.0 || !machine.forces.empty() ||
            std::ranges::any_of(made_.free, [](const FreeParameter& parameter) {
-             return parameter.key.path == calibration::k_compliance;
+             return parameter.key.path == calibration::k_force_offset ||
+                    parameter.key.path == calibration::k_compliance;
            });
   }
 
@@ -314,7 +322,7 @@ class PlanReader {
 }  // namespace
 
 bool ExperimentPlan::has_machine() const noexcept {
-  return !machine.is_rigid() || std::ranges::any_of(free, [](const FreeParameter& parameter) {
+  return !machine.adds_nothing() || std::ranges::any_of(free, [](const FreeParameter& parameter) {
     return parameter.key.path.starts_with(calibration::k_data);
   });
 }

@@ -544,6 +544,77 @@ TEST_F(MachineCalibration, AMachineUnderForceControlAddsToTheDisplacement) {
   EXPECT_NEAR(result.particle.back(), 8e-5, 1e-11);
 }
 
+// --- scale of a column, and zero of the load cell
+
+TEST_F(MachineCalibration, AScaleMakesAFileOfNegativeCompressionThePlainOne) {
+  const CalibrationResult plain = calibrate(read_plain(k_uniaxial));
+  const Calibration calibration = read(machine_file("neg.csv"), R"(x = { column = "displacement[mm]", scale = -1 }
+y = { column = "force[kN]", scale = -1.0 })");
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_TRUE(result.warnings.empty());
+  for (const std::size_t k : {0U, 1U}) {
+    EXPECT_NEAR(result.solution.parameters[k] / plain.solution.parameters[k], 1.0, 1e-7);
+  }
+  const auto json = nlohmann::json::parse(calibration_json(calibration, result));
+  EXPECT_EQ(json["data"]["x"]["scale"], -1.0);
+  const auto none = [&] { return read(k_uniaxial, "x = { column = 1, scale = 0 }\ny = \"force[kN]\""); };
+  EXPECT_EQ(faults(none).front(), "scale = 0: expected a factor other than zero");
+}
+
+/// Rows of hertz_on_a_machine, the force with what the load cell shows without a load.
+std::string with_zero_of(double force_offset) {
+  std::string text = "displacement[um],force[N]\n";
+  for (const MachineRow& row : hertz_on_a_machine(3e-5, 1e-8)) {
+    text += fmt::format("{:.17g},{:.17g}\n", 1e6 * row.x, row.force + force_offset);
+  }
+  return text;
+}
+
+TEST_F(MachineCalibration, FindsTheZeroOfTheLoadCellWithTheModulus) {
+  write_hertz(folder());
+  write_text(folder() / "d.csv", with_zero_of(-40.0));
+  const std::string text = std::string(k_hertz) + "\"data.force_offset\" = { from = \"-100 N\", to = \"100 N\" }\n";
+  write_text(folder() / "h.toml", text);
+  const Calibration calibration = read_calibration(folder() / "h.toml");
+  const CalibrationResult result = calibrate(calibration);
+  EXPECT_NEAR(result.solution.parameters[0] / k_hertz_modulus, 1.0, 1e-6);
+  EXPECT_NEAR(result.solution.parameters[1], 3e-5, 1e-11);
+  EXPECT_NEAR(result.solution.parameters[2], 1e-8, 1e-14);
+  EXPECT_NEAR(result.solution.parameters[3], -40.0, 1e-4);
+  EXPECT_NEAR(result.particle.back(), 8e-5, 1e-10);
+}
+
+TEST_F(MachineCalibration, AKnownZeroOfTheLoadCellIsTakenOffTheForce) {
+  write_hertz(folder());
+  write_text(folder() / "d.csv", with_zero_of(25.0));
+  for (const bool is_driven : {false, true}) {
+    std::string text = replaced(k_hertz, "y = \"force[N]\"\n", "y = \"force[N]\"\nforce_offset = \"25 N\"\n");
+    if (is_driven) {
+      // Before the first touch a force of zero has no displacement of its own.
+      std::string data = "displacement[um],force[N]\n";
+      for (const MachineRow& row : hertz_on_a_machine(3e-5, 1e-8)) {
+        if (row.force > 0.0) data += fmt::format("{:.17g},{:.17g}\n", 1e6 * row.x, row.force + 25.0);
+      }
+      write_text(folder() / "d.csv", data);
+      text = replaced(text, "x = \"displacement[um]\"\ny = \"force[N]\"", "x = \"force[N]\"\ny = \"displacement[um]\"");
+    }
+    write_text(folder() / "h.toml", text);
+    const CalibrationResult result = calibrate(read_calibration(folder() / "h.toml"));
+    EXPECT_NEAR(result.solution.parameters[0] / k_hertz_modulus, 1.0, 1e-6) << is_driven;
+    EXPECT_NEAR(result.solution.parameters[1], 3e-5, 1e-10) << is_driven;
+    EXPECT_NEAR(result.solution.parameters[2], 1e-8, 1e-13) << is_driven;
+  }
+}
+
+TEST_F(MachineCalibration, AZeroOfTheLoadCellNeedsAForce) {
+  const auto area = [&] {
+    return read(k_uniaxial, "x = \"displacement[mm]\"\ny = { column = 2, quantity = \"pressure\", unit = \"MPa\" }",
+                "\"data.force_offset\" = { from = \"0 N\", to = \"1 N\" }");
+  };
+  EXPECT_EQ(faults(area), std::vector<std::string>{
+                              "a force_offset takes a force; x and y are 'axial.displacement' and 'axial.pressure'"});
+}
+
 TEST_F(MachineCalibration, AMachineNeedsADisplacementAndItsForce) {
   const std::string compliance = R"("data.compliance" = { from = 0, to = "1 um/N" })";
   const auto pressure = [&] {
@@ -573,13 +644,48 @@ TEST_F(MachineCalibration, BlamesABadFitOnUnitSignOrContent) {
        std::vector<Case>{{"um.csv", "x = \"displacement[µm]\"", "the fit is worse than a constant: R^2 = -4.454",
                           "the unit of x: with mm instead of µm, R^2 is 0.9992"},
                          {"neg.csv", k_plain_x, "no datum touches the particle: the fit is zero in every row",
-                          "the signs of x and y: with both reversed, R^2 is 0.9992"},
+                          "the signs of x and y: with scale = -1 in x and scale = -1 in y, R^2 is 0.9992"},
                          {"consty.csv", k_plain_x, "y is the same in every row", ""}}) {
     const CalibrationResult result = calibrate(read(machine_file(c.file), fmt::format("{}\n{}", c.x, k_plain_y)));
     ASSERT_EQ(result.warnings.size(), 1U) << c.file;
     EXPECT_TRUE(result.warnings[0].starts_with(c.begin)) << result.warnings[0];
     EXPECT_NE(result.warnings[0].find(c.cause), std::string::npos) << result.warnings[0];
   }
+}
+
+/// The rows of a calibration in mm and kN, the displacement times a factor.
+std::string rows_times(const Calibration& calibration, double factor) {
+  std::string text = "displacement[mm],force[kN]\n";
+  for (std::size_t row = 0; row < calibration.lines.size(); ++row) {
+    text +=
+        fmt::format("{:.17g},{:.17g}\n", 1e3 * factor * calibration.x.values[row], 1e-3 * calibration.y.values[row]);
+  }
+  return text;
+}
+
+TEST_F(MachineCalibration, DoubtsTheDisplacementOfTwoWallsAndOfHalfAWall) {
+  for (const auto& [factor, cause] :
+       {std::pair(2.0, "of one wall towards another at rest: with scale = 0.5 in x, they are 0.25 times as large"),
+        std::pair(0.5, "half of that of a wall: with scale = 2 in x, they are 0.61 times as large, and noise")}) {
+    write_text(folder() / "d.csv", rows_times(read_plain(k_uniaxial), factor));
+    const CalibrationResult result = calibrate(read_plain("d.csv"));
+    EXPECT_GT(result.explained, k_least_explained);
+    ASSERT_EQ(result.warnings.size(), 1U) << factor;
+    EXPECT_TRUE(result.warnings[0].starts_with("the residuals are not noise; likely cause: the displacement, "));
+    EXPECT_NE(result.warnings[0].find(cause), std::string::npos) << result.warnings[0];
+    const CalibrationResult mended =
+        calibrate(read("d.csv", fmt::format("x = {{ column = 1, quantity = \"displacement\", scale = {} }}\n{}",
+                                            1.0 / factor, k_plain_y)));
+    EXPECT_TRUE(has(mended, 0, k_modulus));
+    EXPECT_TRUE(mended.warnings.empty());
+  }
+}
+
+TEST_F(MachineCalibration, DoesNotBlameTheFrameOnTheNumberOfWalls) {
+  const CalibrationResult rigid = calibrate(read_plain(machine_file("compl.csv")));
+  ASSERT_TRUE(rigid.residual_tests);
+  EXPECT_FALSE(rigid.residual_tests->are_independent());
+  EXPECT_TRUE(rigid.warnings.empty());
 }
 
 TEST_F(MachineCalibration, BlamesABadFitOnTheFirstTouch) {

@@ -257,9 +257,10 @@ TEST_F(MachinePlanTest, RefusesAMachineThatCannotMeasureSo) {
   EXPECT_EQ(fault(replaced(plan, "20 nm/N", "300 nm/N")),
             "6:1: 'data.compliance' is 300 nm/N in [data], which is not between the bounds");
   EXPECT_EQ(fault(replaced(plan, "offset = \"30 um\"", "file = \"d.csv\"")),
-            "8:1: key 'file' belongs to a calibration file; expected offset, compliance or both");
-  EXPECT_EQ(fault(replaced(plan, "points = 60", "y = \"axial.contact_radius\"")),
-            "13:5: a compliance takes force and displacement of the same walls; y is 'axial.contact_radius'");
+            "8:1: key 'file' belongs to a calibration file; expected offset, force_offset or compliance");
+  EXPECT_EQ(
+      fault(replaced(plan, "points = 60", "y = \"axial.contact_radius\"")),
+      "13:5: compliance and force_offset take force and displacement of the same walls; y is 'axial.contact_radius'");
   EXPECT_EQ(fault(std::string("scenario = \"s.toml\"\n[free]\n") + k_machine_free + k_machine + k_mdr_program),
             "2:1: expected at least one free number of the scenario");
 }
