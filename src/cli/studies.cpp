@@ -15,9 +15,11 @@
 #include "figure/page.hpp"
 #include "history/compare.hpp"
 #include "history/run_files.hpp"
+#include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "study/atlas/atlas.hpp"
 #include "study/atlas/profile.hpp"
+#include "study/calibrate/calibration.hpp"
 #include "study/calibrate/data_report.hpp"
 #include "system/resolution.hpp"
 #include "verify/regress/regress.hpp"
@@ -58,12 +60,28 @@ int plot_profile(const PlotOptions& options) {
   return k_success;
 }
 
+/// Notes data with the machine's part over a run of a scenario that was fitted without it.
+void note_machine(const std::vector<fs::path>& runs, const std::string& data) {
+  for (const fs::path& run : runs) {
+    const fs::path folder = fs::is_directory(run) ? run : run.parent_path();
+    const std::string text = read_text_file(folder / "run.json", k_largest_data).text;
+    if (text.find(k_without_machine) == std::string::npos) continue;
+    say("note: {} is a run of the particle alone; '{}' is drawn as recorded, with what the machine adds. The folder of "
+        "the "
+        "calibration, after --data, has the data without it\n",
+        run.string(), data);
+  }
+}
+
 /// Chart of chosen columns, with measured data.
 figure::ColumnChart column_chart_of(const PlotOptions& options, const std::vector<fs::path>& runs) {
   try {
     figure::ColumnChart chart = figure::column_chart(runs, options.columns);
     for (const std::string& file : options.data) {
-      DataReport data = report_of_file(file, {{}, {}, chart.x.dimension, chart.y.dimension});
+      const DataChoice choice{{}, {}, chart.x.dimension, chart.y.dimension};
+      const bool is_calibration = fs::is_regular_file(fs::path(file) / k_calibration_marker);
+      if (!is_calibration) note_machine(runs, file);
+      DataReport data = is_calibration ? report_of_calibration(file, choice) : report_of_file(file, choice);
       const auto axis = [](DataAxis& read) {
         return figure::MeasuredPoints::Axis{read.name, read.unit, std::move(read.values)};
       };
@@ -269,9 +287,10 @@ void add_plot_command(CLI::App& app, Action& action) {
   command->add_option("--y", options->columns.y,
                       "Column over it [force of the driven walls; the largest first force of a sweep]");
   command->add_option("--unit", options->columns.unit, "Unit of the column over it, e.g. kN [that of the file]");
-  command->add_option("--data", options->data,
-                      "File of measured data to draw as points, read as by monograin data; its columns are found by "
-                      "the dimensions of the axes");
+  command->add_option(
+      "--data", options->data,
+      "File of measured data to draw as points, read as by monograin data; its columns are found by "
+      "the dimensions of the axes. The folder of a calibration: its data without what the machine adds");
   command->footer("Example: monograin plot runs/die -o die.pdf");
   command->callback([options, &action] { action = [options] { return plot(*options); }; });
 }

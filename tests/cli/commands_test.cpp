@@ -360,6 +360,32 @@ TEST_F(Commands, PlotDrawsAnyColumnsWithMeasuredData) {
   EXPECT_FALSE(fs::exists(path("h.svg")));
 }
 
+TEST_F(Commands, PlotDrawsTheParticlesDataOverTheFittedScenario) {
+  write_text(path("small.toml"), k_small);
+  write_text(path("measured.csv"), "displacement[um],force[N]\n6,0.5\n10,1\n20,4\n30,8\n");
+  write_text(path("c.toml"), R"(scenario = "small.toml"
+[data]
+file = "measured.csv"
+x = "displacement[um]"
+y = "force[N]"
+offset = "5 um"
+force_offset = "0.25 N"
+[free]
+"material.youngs_modulus" = { from = "1 kPa", to = "1000 GPa" }
+)");
+  ASSERT_EQ(monograin("calibrate c.toml").code, 0) << text("stderr.txt");
+  ASSERT_EQ(monograin("run runs/c/fitted.toml -o runs/fitted").code, 0) << text("stderr.txt");
+  const Outcome particle = monograin("plot runs/fitted --data runs/c -o f.svg");
+  ASSERT_EQ(particle.code, 0) << particle.err;
+  EXPECT_NE(text("f.dat").find("e-05 7.75\n"), std::string::npos) << text("f.dat");
+  EXPECT_EQ(particle.err.find("note:"), std::string::npos) << particle.err;
+  const Outcome recorded = monograin("plot runs/fitted --data measured.csv -o g.svg");
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  EXPECT_NE(recorded.err.find("note: runs/fitted is a run of the particle alone; 'measured.csv' is drawn as recorded"),
+            std::string::npos)
+      << recorded.err;
+}
+
 TEST_F(Commands, PlotDrawsProfilesAtAnInstant) {
   write_text(path("small.toml"), k_small);
   ASSERT_EQ(monograin("run small.toml").code, 0);

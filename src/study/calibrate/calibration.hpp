@@ -182,7 +182,8 @@ inline constexpr double k_most_missing = 0.1;
 /// Parameters, intervals, correlations and residuals as text for the terminal.
 [[nodiscard]] std::string calibration_text(const Calibration& calibration, const CalibrationResult& result);
 
-/// Content of fit.csv: data, fit, residuals, confidence band and weights, row by row.
+/// Content of fit.csv: data, fit, residuals, confidence band and weights, row by row; with a machine, the data without
+/// what it adds, too.
 [[nodiscard]] Table fit_table(const Calibration& calibration, const CalibrationResult& result);
 
 /// Content of calibration.json: parameters, covariance, statistics and data. Undefined numbers are null.
@@ -192,6 +193,14 @@ inline constexpr double k_most_missing = 0.1;
 inline constexpr const char* k_calibration_marker = "calibration.json";
 /// Other files that every such folder has.
 inline constexpr std::array<std::string_view, 2> k_calibration_tables{"fit.csv", "fitted.toml"};
+
+/// Columns of fit.csv that are the data without what the machine adds.
+inline constexpr const char* k_particle_displacement = "particle_displacement";
+inline constexpr const char* k_particle_force = "particle_force";
+
+/// Line of a fitted scenario that a machine was part of the fit.
+inline constexpr const char* k_without_machine =
+    "Displacement and force are the particle's, without what the machine adds: those of fit.csv";
 
 /// Writes fit.csv, fitted.toml with the tables it names, calibration.json and figure.svg with its script and data; all
 /// of them or none.

@@ -239,6 +239,7 @@ std::string fitted_scenario_text(const Calibration& calibration, const Calibrati
     head += fmt::format("#   {} = {}{}\n", parameter.key.path, with_unit(value / parameter.unit_factor, parameter.unit),
                         std::isfinite(half) ? fmt::format(" +- {}", with_unit(half, parameter.unit)) : "");
   }
+  if (calibration.has_machine()) head += fmt::format("# {}\n", k_without_machine);
   for (const FittedFile& file : fitted_files(calibration)) edits.push_back({file.key.path, '"' + file.name + '"'});
   const std::string text = shared_scenario_text(calibration, head);
   return head + with_values(text, edits);
@@ -258,7 +259,11 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
                               {"residual", y.si, {}},   {"band_lower", y.si, {}}, {"band_upper", y.si, {}},
                               {"weight", inverse, {}}};
   const bool has_machine = !result.particle.empty();
-  if (has_machine) columns.push_back({"particle_displacement", "m", {}});
+  const bool moves_x = calibration.machine_moves_x();
+  const MeasuredQuantity& moving = moves_x ? y : x;  // the force, if there is one
+  const bool has_force = has_machine && moving.observable.ends_with(".force");
+  if (has_machine) columns.push_back({k_particle_displacement, "m", {}});
+  if (has_force) columns.push_back({k_particle_force, "N", {}});
   const bool has_several = calibration.curves.size() > 1;
   if (has_several) columns.push_back({"curve", "", {}});
   Table table(std::move(columns));
@@ -280,7 +285,11 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
     const double band = result.fit.band[row];
     std::vector<double> cells{x.values[row], y.values[row],      fit, y.values[row] - fit, fit - band,
                               fit + band,    result.weights[row]};
-    if (has_machine) cells.push_back(result.particle[row]);
+    if (has_machine) cells.push_back(result.particle[row] + (moves_x ? 0.0 : y.values[row] - fit));
+    if (has_force) {
+      const Machine machine = calibration.machine_of(calibration.curve_of(row), result.solution.parameters);
+      cells.push_back(moving.values[row] - machine.force_offset);
+    }
     if (has_several) {
       cells.push_back(static_cast<double>(&calibration.curve_of(row) - calibration.curves.data() + 1));
     }

@@ -222,6 +222,17 @@ DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
   return report;
 }
 
+DataReport report_of_calibration(const fs::path& folder, DataChoice choice) {
+  const fs::path file = folder / "fit.csv";
+  const std::vector<ColumnSummary> columns = report_of_file(file).columns;
+  const auto has = [&columns](std::string_view name) {
+    return std::ranges::any_of(columns, [name](const auto& column) { return name_in(column.heading) == name; });
+  };
+  if (choice.x_dimension == Dimension::length && has(k_particle_displacement)) choice.x = k_particle_displacement;
+  if (choice.y_dimension == Dimension::force && has(k_particle_force)) choice.y = k_particle_force;
+  return report_of_file(file, choice);
+}
+
 std::vector<DataReport> reports_of(const Calibration& calibration) {
   std::vector<DataReport> reports;
   FaultList faults;

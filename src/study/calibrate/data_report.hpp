@@ -67,6 +67,9 @@ struct DataChoice {
 /// Reads a table of measured data. @throws ScenarioError with its faults
 [[nodiscard]] DataReport report_of_file(const std::filesystem::path& file, const DataChoice& choice = {});
 
+/// Reads the data of a calibration from the folder of its results, without what the machine adds.
+[[nodiscard]] DataReport report_of_calibration(const std::filesystem::path& folder, DataChoice choice = {});
+
 /// Reports on the data of a calibration's curves, with the x and y that the calibration uses.
 [[nodiscard]] std::vector<DataReport> reports_of(const Calibration& calibration);
 

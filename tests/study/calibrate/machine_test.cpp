@@ -544,6 +544,29 @@ TEST_F(MachineCalibration, AMachineUnderForceControlAddsToTheDisplacement) {
   EXPECT_NEAR(result.particle.back(), 8e-5, 1e-11);
 }
 
+TEST_F(MachineCalibration, LeavesTheDataOfTheParticleBesideTheFit) {
+  write_hertz(folder());
+  for (const auto& [x, y] : {std::pair("displacement[um]", "force[N]"), std::pair("force[N]", "displacement[um]")}) {
+    std::string data = "displacement[um],force[N]\n";
+    for (const MachineRow& row : hertz_on_a_machine(3e-5, 1e-8)) {
+      if (row.force > 0.0) data += fmt::format("{:.17g},{:.17g}\n", 1e6 * row.x, row.force + 25.0);
+    }
+    write_text(folder() / "d.csv", data);
+    write_text(folder() / "h.toml", replaced(k_hertz, "x = \"displacement[um]\"\ny = \"force[N]\"\n",
+                                             fmt::format("x = \"{}\"\ny = \"{}\"\nforce_offset = \"25 N\"\n", x, y)));
+    const Calibration calibration = read_calibration(folder() / "h.toml");
+    const CalibrationResult result = calibrate(calibration);
+    const Table fit = fit_table(calibration, result);
+    for (std::size_t row = 0; row < fit.row_count(); ++row) {
+      const double displacement = 4e-6 * static_cast<double>(row + 1);
+      const double force = hertz_force(k_hertz_modulus / (1.0 - 0.22 * 0.22), 0.01, displacement);
+      EXPECT_NEAR(fit.at(row, *fit.find(k_particle_displacement)), displacement, 1e-10) << x;
+      EXPECT_NEAR(fit.at(row, *fit.find(k_particle_force)), force, 1e-9 * force) << x;
+    }
+    EXPECT_NE(fitted_scenario_text(calibration, result).find(k_without_machine), std::string::npos);
+  }
+}
+
 // --- scale of a column, and zero of the load cell
 
 TEST_F(MachineCalibration, AScaleMakesAFileOfNegativeCompressionThePlainOne) {
