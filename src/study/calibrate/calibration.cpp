@@ -1,6 +1,7 @@
 #include "study/calibrate/calibration.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -224,10 +225,21 @@ class Fit {
     const std::string cause = likely_cause(calibration_, trial);
     throw_fault(
         {curve.file, calibration_.lines[curve.begin + replay.failed_at()]},
-        fmt::format("the scenario cannot follow the data beyond this row with any parameters that were tried: {}; "
+        fmt::format("the scenario cannot follow the data beyond this row with any parameters that were tried ({}): {}; "
                     "expected other bounds, or data that model '{}' can follow{}",
-                    responses_[failed].problem(), calibration_.scenario.model,
+                    bounds_text(), responses_[failed].problem(), calibration_.scenario.model,
                     cause.empty() ? "" : "; likely cause: " + cause));
+  }
+
+  /// The free parameters with their bounds: "'material.youngs_modulus' from 0.1 to 10 GPa".
+  [[nodiscard]] std::string bounds_text() const {
+    std::vector<std::string> texts;
+    for (const FreeParameter& parameter : calibration_.free) {
+      texts.push_back(fmt::format("'{}' from {:.6g} to {:.6g}{}{}", parameter.key.path,
+                                  parameter.lower / parameter.unit_factor, parameter.upper / parameter.unit_factor,
+                                  parameter.unit.empty() ? "" : " ", parameter.unit));
+    }
+    return fmt::format("{}", fmt::join(texts, ", "));
   }
 
   // --- intervals

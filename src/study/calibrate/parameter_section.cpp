@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -63,28 +65,82 @@ void set_unit(FreeParameter& parameter, const toml::node& bound, double initial_
   }
 }
 
-/// Checks that the scenario's text can take a number, so that the fitted scenario can be run.
-void check_place(Reading& reading, const Section& free, const ScenarioText& scenario, const FreeParameter& parameter) {
-  const std::string& path = parameter.key.path;
-  if (path.starts_with(k_data)) return;  // a number of the machine is not in the scenario
+using Values = std::vector<std::pair<std::string_view, double>>;  // of numbers, by their paths
+
+/// Why the scenario does not take values; none if it does.
+/// @throws std::runtime_error if its text has no place for one of them
+std::optional<std::string> refusal_of(const ScenarioText& scenario, const Values& values) {
+  std::vector<TextEdit> edits;
+  for (const auto& [path, value] : values) edits.push_back({std::string(path), fmt::format("{:e}", value)});
+  const std::string text = with_values(scenario.text, edits);
   try {
-    const std::string text =
-        with_values(scenario.text, {{path, fmt::format("{:e}", parameter.start.value_or(parameter.lower))}});
     static_cast<void>(parse_scenario(text, scenario.file));
   } catch (const ScenarioError& error) {
-    reading.faults.add(free.key_place(path), fmt::format("the scenario does not take '{}': {}", path,
-                                                         on_one_line(error.faults().front().message)));
+    return on_one_line(error.faults().front().message);
+  }
+  return std::nullopt;
+}
+
+double middle_of(const FreeParameter& parameter) {
+  return parameter.is_logarithmic ? std::sqrt(parameter.lower * parameter.upper)
+                                  : std::midpoint(parameter.lower, parameter.upper);
+}
+
+/// A number that the scenario takes nowhere within its bounds, as far as it was tried with its other numbers as given.
+struct RefusedNumber {
+  const FreeParameter& parameter;
+  std::string problem;
+};
+
+/// Checks that the scenario takes a number, so that the fitted scenario can be run. A law may end within the bounds:
+/// then the search passes over such values.
+std::optional<RefusedNumber> refused(Reading& reading, const Section& free, const ScenarioText& scenario,
+                                     const FreeParameter& parameter) {
+  const std::string& path = parameter.key.path;
+  if (path.starts_with(k_data)) return {};  // a number of the machine is not in the scenario
+  std::optional<std::string> problem;
+  try {
+    for (const double value :
+         {parameter.start.value_or(parameter.lower), middle_of(parameter), parameter.upper, parameter.lower}) {
+      problem = refusal_of(scenario, {{path, value}});
+      if (!problem) return {};
+    }
   } catch (const std::runtime_error&) {
     reading.faults.add(
         free.key_place(path),
         fmt::format("the scenario does not give '{}', and has no table with a header to put it in; expected "
                     "it there, with any value",
                     path));
+    return {};
+  }
+  return RefusedNumber{parameter, *problem};
+}
+
+/// Reports numbers that the scenario takes nowhere: neither alone nor with all others at their bounds or in the middle.
+void report_refused(Reading& reading, const Section& free, const ScenarioText& scenario,
+                    const std::vector<FreeParameter>& parameters, const std::vector<RefusedNumber>& refused_numbers) {
+  if (refused_numbers.empty()) return;
+  for (std::size_t corner = 0; corner <= std::size_t{1} << parameters.size(); ++corner) {
+    Values values;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const FreeParameter& parameter = parameters[k];
+      if (parameter.key.path.starts_with(k_data)) continue;
+      const double bound = ((corner >> k) & 1U) != 0 ? parameter.upper : parameter.lower;
+      values.emplace_back(parameter.key.path, corner >> parameters.size() != 0 ? middle_of(parameter) : bound);
+    }
+    if (!refusal_of(scenario, values)) return;
+  }
+  for (const RefusedNumber& number : refused_numbers) {
+    const FreeParameter& parameter = number.parameter;
+    const std::string& path = parameter.key.path;
+    reading.faults.add(free.key_place(path),
+                       fmt::format("the scenario does not take '{}' from {:.6g} to {:.6g}{}{}: {}", path,
+                                   parameter.lower / parameter.unit_factor, parameter.upper / parameter.unit_factor,
+                                   parameter.unit.empty() ? "" : " ", parameter.unit, number.problem));
   }
 }
 
-std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, const ScenarioText& scenario,
-                                         const NumberKey& number) {
+std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, const NumberKey& number) {
   const Section::Origin origin = free.table(number.path, fmt::format("\"{}\"", number.path));
   const bool is_compliance = number.path == k_compliance;
   const auto kind_of_bound = [&](std::string_view key) {
@@ -123,7 +179,6 @@ std::optional<FreeParameter> read_bounds(Reading& reading, const Section& free, 
   // A bound of zero may lack a unit; the upper bound then gives it.
   const bool is_bare_zero = number.path.starts_with(k_data) && !origin.table->get("from")->is_string();
   set_unit(parameter, *origin.table->get(is_bare_zero ? "to" : "from"), reading.initial_radius);
-  check_place(reading, free, scenario, parameter);
   return parameter;
 }
 
@@ -246,6 +301,7 @@ std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const 
     reading.faults.add(found[k_most_parameters].first,
                        fmt::format("{} parameters are free; expected at most {}", found.size(), k_most_parameters));
   }
+  const std::size_t before = reading.faults.size();
   std::set<std::string> free_paths;
   std::vector<FreeParameter> parameters;
   for (const auto& [where, number] : found) {
@@ -253,8 +309,14 @@ std::vector<FreeParameter> free_in(Reading& reading, const Section& root, const 
       if (const auto [same, is_new] = free_paths.insert(std::move(path)); !is_new)
         reading.faults.add(where, fmt::format("'{}' is free already; expected it once", *same));
     }
-    if (auto parameter = read_bounds(reading, free, scenario, *number)) parameters.push_back(std::move(*parameter));
+    if (auto parameter = read_bounds(reading, free, *number)) parameters.push_back(std::move(*parameter));
   }
+  if (reading.faults.size() > before) return parameters;
+  std::vector<RefusedNumber> refused_numbers;
+  for (const FreeParameter& parameter : parameters) {
+    if (auto number = refused(reading, free, scenario, parameter)) refused_numbers.push_back(std::move(*number));
+  }
+  if (reading.faults.size() == before) report_refused(reading, free, scenario, parameters, refused_numbers);
   return parameters;
 }
 

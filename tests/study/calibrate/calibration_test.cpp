@@ -128,6 +128,51 @@ y = "axial.force[N]"
 "material.yield_stress" = { from = "5 MPa", to = "200 MPa" }
 )";
 
+// --- bounds beyond a law's end
+
+constexpr const char* k_semimech = R"(model = "semimech"
+[particle]
+radius = "1 mm"
+[material]
+youngs_modulus = "2 GPa"
+poisson_ratio = 0.3
+yield_stress = "20 MPa"
+[loading]
+configuration = "simple"
+[[loading.steps]]
+displacement = "0.2 R0"
+duration = "1 s"
+)";
+
+TEST_F(CalibrationTest, PassesOverCornersOfTheBoxInWhichTheLawEnds) {
+  // E/((1-nu^2) Y) has to be 22 or more, and is 0.5 in one corner. The true values have 80.
+  write("s.toml", k_semimech);
+  write("c.toml", k_two_free);
+  const auto rows =
+      measure(k_semimech, {"material.youngs_modulus=2.2e9", "material.yield_stress=3e7", "output.points=25"});
+  write("d.csv", csv_of({rows.begin() + 1, rows.end()}, "axial.displacement[m],axial.force[N],w[-]"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_NEAR(result.solution.parameters[0] / 2.2e9, 1.0, 1e-5);
+  EXPECT_NEAR(result.solution.parameters[1] / 3e7, 1.0, 1e-5);
+  EXPECT_GT(result.solution.failures, 0);
+}
+
+TEST_F(CalibrationTest, NamesTheBoundsWithinWhichTheLawHasNoPoint) {
+  write("s.toml", k_semimech);
+  write("d.csv", "axial.displacement[m],axial.force[N]\n0.0001,1\n0.0002,2\n0.0003,3\n");
+  write("c.toml",
+        replaced(replaced(k_two_free, "to = \"10 GPa\"", "to = \"0.3 GPa\""), "from = \"5 MPa\"", "from = \"20 MPa\""));
+  const auto messages = faults();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].find("c.toml:7:1: the scenario does not take 'material.youngs_modulus' from 0.1 to 0.3 GPa: "
+                             "E/((1-nu^2) Y) = "),
+            0U)
+      << messages[0];
+  // Together with a yield stress that is free to fall, such a modulus has a law.
+  write("c.toml", replaced(k_two_free, "to = \"10 GPa\"", "to = \"0.3 GPa\""));
+  EXPECT_TRUE(faults().empty());
+}
+
 // --- fits
 
 TEST_F(CalibrationTest, FindsTheParametersOfExactDataWithUnloadingAndReloading) {
