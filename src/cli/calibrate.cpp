@@ -105,7 +105,7 @@ int run_calibrations(const CalibrateOptions& options) {
       return compare_models(calibrations, results, [&line](double done) { line.show(done); });
     }();
     print_data("\n{}", comparison_text(calibrations, results, comparison));
-    const std::string no_figure = write_comparison(calibrations, results, comparison, *staged);
+    const std::string no_figure = write_comparison(calibrations, results, comparison, *staged, options.has_report);
     if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
     if (!options.is_quiet) say("comparison -> {}\n", together.string());
   }

@@ -28,7 +28,7 @@ _monograin() {
     calibrate) options="--output --confidence --report --quiet --strict --help" ;;
     design) options="--output --help" ;;
     data) options="--x --y --plot --output --help" ;;
-    sweep) options="--jobs --shard --design-only --output --help" ;;
+    sweep) options="--jobs --shard --design-only --output --quiet --help" ;;
     sensitivity) options="--jobs --confidence --output --help" ;;
     bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --help" ;;
     stress) options="--time --seed --model --first --scenes --jobs --output --help" ;;

@@ -27,6 +27,7 @@ struct SweepCommandOptions {
   std::string shard = "1/1";
   int threads = 0;
   bool makes_design_only = false;
+  bool is_quiet = false;
 };
 
 /// Reads a shard `i/n`, 1 <= i <= n. @throws UsageError
@@ -80,14 +81,15 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, con
 
 /// Makes the runs of a sweep that are still missing, as far as they belong to the shard.
 /// @return number of runs that are then still missing
-std::size_t run_all(const Sweep& plan, const fs::path& folder, int threads, SweepShard shard) {
+std::size_t run_all(const Sweep& plan, const fs::path& folder, int threads, SweepShard shard, bool is_quiet = false) {
   const auto start = std::chrono::steady_clock::now();
   const SweepOutcome outcome = [&] {
     ProgressBar bar("runs");
     return run_sweep(plan, {.folder = folder, .threads = threads, .shard = shard, .progress = [&](auto done, auto of) {
-                              bar.show(done, of);
+                              if (!is_quiet) bar.show(done, of);
                             }});
   }();
+  if (is_quiet) return outcome.runs_missing;
   report(plan, outcome, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), folder);
   return outcome.runs_missing;
 }
@@ -96,14 +98,14 @@ int sweep(const SweepCommandOptions& options) {
   const SweepShard shard = parse_shard(options.shard);
   const Sweep plan = read_sweep(options.file);
   const fs::path folder = folder_of(plan, options.output);
-  if (plan.left_out > 0) {
+  if (plan.left_out > 0 && !options.is_quiet) {
     say("{}: {} points of the design do not meet the constraints\n", plan.name, plan.left_out);
   }
   if (options.makes_design_only) return make_design(plan, folder);
-  if (run_all(plan, folder, options.threads, shard) > 0 || !plan.bands) return k_success;
+  if (run_all(plan, folder, options.threads, shard, options.is_quiet) > 0 || !plan.bands) return k_success;
   const std::string no_figure = write_bands(plan, bands_of(plan, folder), folder);
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
-  say("{}: bands -> {}\n", plan.name, (folder / "bands.csv").string());
+  if (!options.is_quiet) say("{}: bands -> {}\n", plan.name, (folder / "bands.csv").string());
   return k_success;
 }
 
@@ -151,6 +153,7 @@ void add_sweep_command(CLI::App& app, Action& action) {
   command->add_flag("--design-only", options->makes_design_only,
                     "Write the runs to design.csv and print the criterion psi; run nothing");
   command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
+  command->add_flag("--quiet", options->is_quiet, "Print warnings and errors only");
   command->footer("Example: monograin sweep scenarios/sweeps/poisson.toml -j 4");
   command->callback([options, &action] { action = [options] { return sweep(*options); }; });
 }

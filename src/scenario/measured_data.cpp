@@ -16,7 +16,10 @@
 namespace monograin {
 namespace {
 
-constexpr std::array<std::string_view, 8> k_missing{"", "nan", "na", "n/a", "-", "--", "---", "-----"};
+// Those with '#' are errors of spreadsheets, in English and in German.
+constexpr std::array<std::string_view, 18> k_missing{"",        "nan",    "na",    "n/a",     "-",      "--",
+                                                     "---",     "-----",  "#n/a",  "#nv",     "#wert!", "#value!",
+                                                     "#div/0!", "#zahl!", "#num!", "#bezug!", "#ref!",  "#name?"};
 
 /// True if a cell marks a missing number.
 bool is_missing(std::string_view text) {
@@ -122,8 +125,9 @@ class DataParser {
     if (!is_whole) found = std::ranges::find_if(headings, is_meant);
     if (found == headings.end()) {
       const std::vector<std::string_view> known(headings.begin(), headings.end());
-      return no_column(request, fmt::format("{} has no such column; expected one of {}{}", on_one_line(origin_),
-                                            on_one_line(listed(known)), did_you_mean(request.name, known)));
+      return no_column(
+          request, fmt::format("{} has no such column; expected one of {}{}{}", on_one_line(origin_),
+                               on_one_line(listed(known)), did_you_mean(request.name, known), doubt_of_separator()));
     }
     if (const auto again = std::find_if(found + 1, headings.end(), is_meant); again != headings.end()) {
       return no_column(request,
@@ -131,6 +135,15 @@ class DataParser {
                                    found - headings.begin() + 1, again - headings.begin() + 1, on_one_line(origin_)));
     }
     return static_cast<std::size_t>(found - headings.begin());
+  }
+
+  /// Names the separator that was found, where the cells seem to be separated otherwise.
+  [[nodiscard]] std::string doubt_of_separator() const {
+    const std::vector<std::string>& headings = data_.layout.headings;
+    const auto has_bar = [](const std::string& heading) { return heading.find('|') != std::string::npos; };
+    if (headings.size() > 1 && std::ranges::none_of(headings, has_bar)) return {};
+    return fmt::format("; the cells were read with {} between them, and expected is comma, semicolon, tab or blanks",
+                       separator_word(data_.layout.separator));
   }
 
   std::nullopt_t no_column(const ColumnRequest& request, const std::string& problem) {
@@ -141,18 +154,52 @@ class DataParser {
 
   void take_rows(std::string_view rest) {
     line_ = 0;
+    std::vector<TextLine> texts;  // since the last row with a number
     while (!rest.empty() && found_ < k_most_table_faults) {
       ++line_;
       const std::string_view line = take_line(rest);
-      if (is_comment(line) || line_ < data_.layout.first_line) continue;
-      const std::vector<Cell> cells = cells_of(line, data_.layout.separator);
+      if (line_ < data_.layout.first_line) continue;
+      std::vector<Cell> cells = cells_of(line, data_.layout.separator);
       const auto is_empty = [](const Cell& cell) { return cell.text.empty(); };
-      if (!std::ranges::all_of(cells, is_empty)) take_row(cells);
+      if ((is_comment(line) && !is_missing(cells.front().text)) || std::ranges::all_of(cells, is_empty)) continue;
+      if (is_text(cells)) {
+        texts.push_back({line_, std::move(cells)});
+        continue;
+      }
+      take_texts(texts);
+      take_row(cells);
     }
+    const bool has_rows = !data_.lines.empty() || !data_.left_out.empty();
+    if (!has_rows) take_texts(texts);
+    for (const TextLine& line : texts) data_.trailer.push_back(line.number);
     if (found_ >= k_most_table_faults && !rest.empty()) {
       ++line_;
       fault(1, "too many faults above; the rest of the table is not checked");
     }
+  }
+
+  struct TextLine {
+    std::size_t number;
+    std::vector<Cell> cells;
+  };
+
+  /// True for cells that hold a text and no number.
+  [[nodiscard]] bool is_text(const std::vector<Cell>& cells) const {
+    const auto is_number = [this](const Cell& cell) { return number_in(cell.text, data_.layout.decimal).has_value(); };
+    return std::ranges::none_of(cells, is_number) &&
+           !std::ranges::all_of(cells, [](const Cell& cell) { return is_missing(cell.text); });
+  }
+
+  /// Takes lines of texts as rows, which they are no ends of.
+  void take_texts(std::vector<TextLine>& texts) {
+    const std::size_t last = line_;
+    for (const TextLine& line : texts) {
+      if (found_ >= k_most_table_faults) break;
+      line_ = line.number;
+      take_row(line.cells);
+    }
+    texts.clear();
+    line_ = last;
   }
 
   void take_row(const std::vector<Cell>& cells) {

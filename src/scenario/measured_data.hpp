@@ -31,13 +31,15 @@ struct MeasuredData {
   std::vector<MeasuredColumn> columns;  ///< in the order of the requests
   std::vector<std::size_t> lines;       ///< of each row in the file, from 1
   std::vector<std::size_t> left_out;    ///< lines of the rows without a number in one of the columns
+  std::vector<std::size_t> trailer;     ///< lines of text below the table
   TableLayout layout;
   std::string text;  ///< the file as it was read, in UTF-8
 };
 
 /// Reads a table of numbers. Lines that begin with '#', blank lines, lines of separators, and columns that were not
 /// requested do not count. Every cell has to be a finite number. A cell that is empty or marks a missing number (nan,
-/// n/a, a dash) leaves its row out, as long as `format` admits so many.
+/// n/a, a dash, an error of a spreadsheet) leaves its row out, as long as `format` admits so many. Lines of text
+/// without any number below the last row are left out.
 ///
 /// The result is only meaningful if nothing was added to `faults`. Reports the first twenty faults of the table, with
 /// line and column.

@@ -165,6 +165,9 @@ class LayoutFinder {
       layout.headings.resize(width_);
       layout.preamble = next;
       layout.splits_decimals = splits_decimals(first);
+      if (first > 0 && rows_[first - 1].numbers == 0 && rows_[first - 1].filled > 1) {
+        layout.unmatched_line = rows_[first - 1].number;
+      }
     }
     layout.first_line = next < rows_.size() ? rows_[next].number : rows_.back().number + 1;
     take_units(row_units, layout);

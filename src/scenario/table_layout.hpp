@@ -29,6 +29,7 @@ struct TableLayout {
   char decimal = '.';
   std::size_t heading_line = 0;
   std::size_t unit_line = 0;
+  std::size_t unmatched_line = 0;       ///< of texts above a table without headings, more or fewer than its columns
   std::size_t first_line = 0;           ///< of the data
   std::size_t preamble = 0;             ///< lines above the headings that are neither blank nor comments
   std::vector<std::string> headings{};  ///< one for each column; empty texts where the table has none

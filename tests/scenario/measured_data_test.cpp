@@ -187,6 +187,22 @@ TEST(MachineFiles, InAnyWritingGiveTheNumbersOfThePlainFile) {
   EXPECT_GE(variants, 900U);
 }
 
+TEST(MachineFiles, EndWithLinesOfTextThatAreLeftOut) {
+  for (const char* end : {"END\n", "***\n", "End of test;\nOperator;M. Miller\n\n"}) {
+    const Outcome outcome = read(std::string("Weg;Kraft\n1;2\n3;4\n") + end);
+    EXPECT_EQ(outcome.faults, Cells()) << end;
+    EXPECT_EQ(outcome.data.columns[1].values, (std::vector<double>{2.0, 4.0})) << end;
+    EXPECT_EQ(outcome.data.trailer.front(), 4U) << end;
+  }
+  EXPECT_EQ(read("Weg;Kraft\na;b\n").faults.size(), 2U) << "no row above";
+}
+
+TEST(MachineFiles, MayBeginARowWithAnErrorOfASpreadsheet) {
+  const Outcome outcome = read("t,Weg,Kraft\n0,1,2\n#N/A,3,4\n# a comment\n2,5,6\n");
+  EXPECT_EQ(outcome.faults, Cells());
+  EXPECT_EQ(outcome.data.columns[0].values, (std::vector<double>{1.0, 3.0, 5.0}));
+}
+
 TEST(MachineFiles, AreFoundWithoutNamesToo) {
   for (const Writing& writing : k_writings) {
     for (const Preamble preamble : {Preamble::none, Preamble::title, Preamble::specimen, Preamble::comments}) {
@@ -203,17 +219,17 @@ TEST(MachineFiles, LeaveOutRowsWithoutANumberAndCountThem) {
   for (const Writing& writing : k_writings) {
     if (writing.separator == ' ') continue;  // between blanks a missing cell cannot be seen
     std::string text = table_text(writing, Preamble::title, UnitPlace::row);
-    for (const char* missing : {"", "NaN", "n/a", "---"}) {
+    for (const char* missing : {"", "NaN", "n/a", "---", "#N/A", "#WERT!", "#DIV/0!"}) {
       text += line_of({"3.0", missing, "7.5"}, writing) + '\n';
     }
     text += line_of({"", "", ""}, writing) + '\n';        // says nothing
     text += line_of({"", "1.0", "2.0"}, writing) + '\n';  // lacks what is not asked for
     const Outcome outcome = read(text, {.most_missing = 0.5});
     ASSERT_EQ(outcome.faults, Cells()) << text;
-    EXPECT_EQ(outcome.data.left_out, (std::vector<std::size_t>{10, 11, 12, 13})) << text;
+    EXPECT_EQ(outcome.data.left_out, (std::vector<std::size_t>{10, 11, 12, 13, 14, 15, 16})) << text;
     EXPECT_EQ(outcome.data.lines.size(), k_x.size() + 1) << text;
     const Outcome strict = read(text);
-    ASSERT_EQ(strict.faults.size(), 4U) << text;
+    ASSERT_EQ(strict.faults.size(), 7U) << text;
   }
 }
 
@@ -347,9 +363,18 @@ const std::vector<FaultCase> k_faults{
      "Weg;Kraft\n0.5;1.5\n0.6;1,5\n0.7;2.5\n",
      {"d.csv:3:5: Kraft = 1,5: expected a finite number; the decimal sign of the rows above is '.'"}},
     {"ColumnCountedInCharacters", "Weg;Kraft;µ\n1;x;µ\n2;3;4\n", {"d.csv:2:3: Kraft = x: expected a finite number"}},
-    {"BelowTheTable",
-     "Weg,Kraft\n1,2\n3,4\nEnd of test\n",
+    {"BetweenRows",
+     "Weg,Kraft\n1,2\n3,4\nEnd of test\n5,6\n",
      {"d.csv:4:1: 1 cell where there are 2 headings; expected a cell for each, and nothing below the table"}},
+    {"NumberBelowTheTable",
+     "Weg;Kraft\n1;2\n3;4\nMax;4;N\n",
+     {"d.csv:4:1: 3 cells where there are 2 headings; expected a cell for each, and nothing below the table"}},
+    {"Pipes",
+     "Weg|Kraft\n1|2\n3|4\n",
+     {"c.toml:1:1: x = \"Weg\": d.csv has no such column; expected one of Weg|Kraft; the cells were read with comma "
+      "between them, and expected is comma, semicolon, tab or blanks",
+      "c.toml:1:1: y = \"Kraft\": d.csv has no such column; expected one of Weg|Kraft; the cells were read with comma "
+      "between them, and expected is comma, semicolon, tab or blanks"}},
     {"TwoOfAName",
      "Weg,Kraft,Weg\n1,2,3\n",
      {"c.toml:1:1: x = \"Weg\": columns 1 and 3 of d.csv are both called so; expected the number of one"}},

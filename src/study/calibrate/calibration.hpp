@@ -61,6 +61,7 @@ struct MeasuredCurve {
   std::array<std::size_t, 2> columns{};    ///< of x and y in the file, from 1
   std::array<double, 2> scales{1.0, 1.0};  ///< factors of the numbers in these columns
   std::vector<std::size_t> left_out;       ///< lines in which one of the columns has no number
+  std::vector<std::size_t> trailer;        ///< lines of text below the table
   NoiseParts noise;                        ///< of y; zero if it is not known, or if a column has it
   Machine machine;                         ///< as given, without its free numbers
   std::vector<std::string> overrides;      ///< of the scenario, for this curve

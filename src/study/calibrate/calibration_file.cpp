@@ -19,6 +19,7 @@
 #include "scenario/words.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/data_report.hpp"
 #include "study/calibrate/data_section.hpp"
 #include "study/calibrate/parameter_section.hpp"
 #include "study/calibrate/scenario_section.hpp"
@@ -224,6 +225,7 @@ class CalibrationReader {
     curve.layout = std::move(measured.layout);
     curve.columns = {measured.columns[0].number, measured.columns[1].number};
     curve.left_out = std::move(measured.left_out);
+    curve.trailer = std::move(measured.trailer);
     return measured;
   }
 
@@ -415,6 +417,9 @@ class CalibrationReader {
       if (!one.value || *one.value == quantities[k]->unit_factor) continue;
       made_.notes.push_back(fmt::format("{}: {} says '{}', and the file '{}'; the first was taken", name,
                                         specs[k].request.naming, specs[k].unit, shown(own)));
+    }
+    if (const std::string text = trailer_text(curve.trailer); !text.empty()) {
+      made_.notes.push_back(fmt::format("{}: {} below the table left out", name, text));
     }
     if (curve.left_out.empty()) return;
     made_.notes.push_back(

@@ -170,10 +170,19 @@ std::vector<std::string> objections_to(const DataReport& report) {
     objections.push_back(fmt::format(
         "'{}' is no unit that monograin knows; a calibration needs {{ column, quantity, unit }}", shown(axis->unit)));
   }
+  if (const std::size_t line = report.layout.unmatched_line; line > 0) {
+    objections.push_back(fmt::format("line {} has no text for each of the {} columns, and was not taken for headings",
+                                     line, report.columns.size()));
+  }
   return objections;
 }
 
 }  // namespace
+
+std::string trailer_text(const std::vector<std::size_t>& lines) {
+  if (lines.empty()) return {};
+  return fmt::format("{} line{} from line {}", lines.size(), lines.size() == 1 ? "" : "s", lines.front());
+}
 
 DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
   DataReport report;
@@ -191,8 +200,10 @@ DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
   if (std::ranges::count(first.layout.is_numeric, true) < 2) {
     throw_fault(
         {report.file, std::max<std::size_t>(first.layout.first_line, 1)},
-        "this is no table with two columns of numbers; if it is, give separator, decimal or skip in [data] of a "
-        "calibration file");
+        fmt::format(
+            "this is no table with two columns of numbers and comma, semicolon, tab or blanks between them (read "
+            "with {}); if it is, give separator, decimal or skip in [data] of a calibration file",
+            separator_word(first.layout.separator)));
   }
   report.columns = summaries_of(bytes, report.file, report.layout, faults);
 
@@ -217,6 +228,7 @@ DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
   report.y = axis_of(std::move(data.columns[1]));
   report.lines = std::move(data.lines);
   report.left_out = data.left_out.size();
+  report.trailer = std::move(data.trailer);
   report.branches = branches_of(report.x.values);
   report.remarks = objections_to(report);
   return report;
@@ -255,6 +267,7 @@ std::vector<DataReport> reports_of(const Calibration& calibration) {
     report.lines.assign(calibration.lines.begin() + static_cast<std::ptrdiff_t>(curve.begin),
                         calibration.lines.begin() + static_cast<std::ptrdiff_t>(curve.end));
     report.left_out = curve.left_out.size();
+    report.trailer = curve.trailer;
     report.branches = branches_of(report.x.values);
     report.remarks = {fmt::format("x is {}", meaning_of(calibration.x, curve.scales[0])),
                       fmt::format("y is {}", meaning_of(calibration.y, curve.scales[1]))};
@@ -289,7 +302,10 @@ std::string data_text(const DataReport& report) {
                                 report.lines.empty()
                                     ? ""
                                     : fmt::format(", lines {} to {}", report.lines.front(), report.lines.back()))},
-           {"left out", fmt::format("{} without x or y", report.left_out)}}) {
+           {"left out",
+            fmt::format(
+                "{} without x or y{}", report.left_out,
+                report.trailer.empty() ? "" : fmt::format("; {} below the table", trailer_text(report.trailer)))}}) {
     text += fmt::format("  {:<11}{}\n", what, value);
   }
   std::vector<TextRow> columns{{"column", "number", "unit", "values", "missing", "lowest", "highest"}};

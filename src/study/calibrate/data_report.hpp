@@ -49,8 +49,9 @@ struct DataReport {
   std::vector<ColumnSummary> columns;
   DataAxis x;
   DataAxis y;
-  std::vector<std::size_t> lines;  ///< line numbers of the rows with x and y
-  std::size_t left_out = 0;        ///< rows without x or y
+  std::vector<std::size_t> lines;    ///< line numbers of the rows with x and y
+  std::size_t left_out = 0;          ///< rows without x or y
+  std::vector<std::size_t> trailer;  ///< lines of text below the table
   std::vector<DataBranch> branches;
   std::vector<std::string> remarks;  ///< how a calibration interprets x and y, or why it would refuse them
 };
@@ -63,6 +64,9 @@ struct DataChoice {
   Dimension x_dimension = Dimension::length;
   Dimension y_dimension = Dimension::force;
 };
+
+/// "2 lines from line 15"; empty if there are none.
+[[nodiscard]] std::string trailer_text(const std::vector<std::size_t>& lines);
 
 /// Reads a table of measured data. @throws ScenarioError with its faults
 [[nodiscard]] DataReport report_of_file(const std::filesystem::path& file, const DataChoice& choice = {});

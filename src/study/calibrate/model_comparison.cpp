@@ -211,10 +211,26 @@ std::string comparison_text(std::span<const Calibration> calibrations, std::span
   return text;
 }
 
+std::string comparison_report(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
+                              const ModelComparison& comparison, bool has_figure) {
+  std::string text = fmt::format("# Fits to {}\n\n```text\n{}```\n", data_names(calibrations.front()),
+                                 comparison_text(calibrations, results, comparison));
+  if (has_figure) text += "\n![data, fits and residuals](comparison.svg)\n";
+  text += "\n## Reports of the fits\n\n";
+  for (const Calibration& calibration : calibrations) {
+    text += fmt::format("- [{0}]({0}/report.md)\n", calibration.name);
+  }
+  return text;
+}
+
 std::string write_comparison(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
-                             const ModelComparison& comparison, StagedFolder& folder) {
+                             const ModelComparison& comparison, StagedFolder& folder, bool has_report) {
   figure::write_whole(folder.path() / k_comparison_marker, csv_text(table_of(calibrations, results, comparison)));
   std::string problem = draw_comparison(calibrations, results, folder.path() / "comparison.svg");
+  if (has_report) {
+    figure::write_whole(folder.path() / "report.md",
+                        comparison_report(calibrations, results, comparison, problem.empty()));
+  }
   folder.publish();
   return problem;
 }

@@ -47,10 +47,17 @@ void check_comparable(std::span<const Calibration> calibrations);
 /// File that marks a folder as one of a comparison.
 inline constexpr const char* k_comparison_marker = "comparison.csv";
 
+/// The comparison in Markdown, with the figure and links to the reports of the fits in folders of their names.
+[[nodiscard]] std::string comparison_report(std::span<const Calibration> calibrations,
+                                            std::span<const CalibrationResult> results,
+                                            const ModelComparison& comparison, bool has_figure);
+
 /// Writes comparison.csv and comparison.svg with its script and data.
+/// @param has_report  true: writes report.md, too
 /// @return why there is no figure; empty: there is one
 [[nodiscard]] std::string write_comparison(std::span<const Calibration> calibrations,
                                            std::span<const CalibrationResult> results,
-                                           const ModelComparison& comparison, StagedFolder& folder);
+                                           const ModelComparison& comparison, StagedFolder& folder,
+                                           bool has_report = false);
 
 }  // namespace monograin

@@ -52,6 +52,15 @@ TEST_F(DataReportTest, ShowsColumnsWithTheirUnitsAndRanges) {
   EXPECT_NE(text.find("Phase        2     -    text"), std::string::npos) << text;
 }
 
+TEST_F(DataReportTest, SaysWhatIsLeftOutAboveAndBelowTheTable) {
+  const std::string text =
+      data_text(report_of_file(write("d.csv", "t,displacement,force,remark\n0,1,2\n1,2,3\n2,3,4\nEND\n")));
+  EXPECT_NE(text.find("left out   0 without x or y; 1 line from line 5 below the table"), std::string::npos) << text;
+  EXPECT_NE(text.find("line 1 has no text for each of the 3 columns, and was not taken for headings"),
+            std::string::npos)
+      << text;
+}
+
 TEST_F(DataReportTest, WithoutUnitsTakesTheFirstTwoColumnsOfNumbers) {
   const DataReport report = report_of_file(write("d.csv", "name,a,b,c\nx,1,2,3\ny,2,3,4\n"));
   EXPECT_EQ(report.x.name, "a");

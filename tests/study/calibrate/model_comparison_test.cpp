@@ -233,7 +233,10 @@ TEST_F(ModelComparisonTest, LeavesATableAndAFigure) {
   const auto calibrations = read({k_alone, std::string(k_alone) + k_offset});
   const auto results = fit(calibrations);
   StagedFolder staged(folder() / "out", k_comparison_marker);
-  EXPECT_EQ(write_comparison(calibrations, results, compare_models(calibrations, results), staged), "");
+  EXPECT_EQ(write_comparison(calibrations, results, compare_models(calibrations, results), staged, true), "");
+  const std::string report = read_text(folder() / "out/report.md");
+  EXPECT_NE(report.find("the BIC is for 'c0'"), std::string::npos) << report;
+  EXPECT_NE(report.find("- [c1](c1/report.md)"), std::string::npos) << report;
   const std::string table = read_text(folder() / "out/comparison.csv");
   EXPECT_EQ(table.substr(0, table.find('\n')),
             "fit,model,parameters,points,rms[N],r_squared,aic,bic,prediction_rms[N]");
