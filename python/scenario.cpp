@@ -94,7 +94,7 @@ void save_texts(const std::string& folder, const std::map<std::string, std::stri
   const Unlocked unlocked;
   StagedFolder staged(folder);
   for (const auto& [name, text] : texts) write_text_file(staged.path() / name, text);
-  staged.publish();
+  staged.publish(0.0);  // the run is elsewhere as well
 }
 
 History profile_of(const SoundScenario& scenario, double time) {

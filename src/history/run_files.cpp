@@ -103,7 +103,8 @@ void write_run(Run& run, StagedFolder& folder, const std::function<void(const fs
   run.timings.output = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_text_file(folder.path() / k_run_marker, run_json(run));
   if (draw) draw(folder.path());
-  folder.publish();
+  const Timings& timings = run.timings;
+  folder.publish(timings.setup + timings.integration + timings.output);
 }
 
 CheckedScenario scenario_of_run(const fs::path& folder) {

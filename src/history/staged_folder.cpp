@@ -35,7 +35,7 @@ constexpr std::size_t k_random_length = 6;  ///< characters that mkdtemp replace
 /// Characters of the target's name in that of the hidden folder; file systems allow 255 in all.
 constexpr std::size_t k_longest_name = 200;
 /// Time of a result above which its loss costs more than to flush it, which takes 10 to 40 ms on a busy disk.
-constexpr std::chrono::seconds k_worth_flushing{1};
+constexpr double k_worth_flushing = 1.0;  // [s]
 // Largest files that are read: for a digest or a list, and as a marker [bytes].
 constexpr std::size_t k_largest_file = std::size_t{4} << 30U;
 constexpr std::size_t k_largest_marker = std::size_t{256} << 20U;
@@ -225,6 +225,7 @@ void move_files(const fs::path& staged, const fs::path& target, const std::strin
   std::size_t linked = 0;
   while (linked < kept.size() && link((target / kept[linked]).c_str(), (staged / kept[linked]).c_str()) == 0) ++linked;
   if (linked == kept.size() && chmod(staged.c_str(), is.st_mode & 07777U) == 0) {
+    if (!kept.empty()) sync_to_disk(staged);  // the user's files are only here once the old folder is removed
     const SignalsHeld held;
     if (renameat2(AT_FDCWD, staged.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return true;
   }
@@ -344,11 +345,14 @@ void StagedFolder::check_name(const std::string& name) const {
   }
 }
 
-void StagedFolder::flush(const fs::path& path) const {
-  if (std::chrono::steady_clock::now() - begin_ > k_worth_flushing) sync_to_disk(path);
+double StagedFolder::age() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }
 
-void StagedFolder::publish() {
+void StagedFolder::publish(double effort) {
+  const auto flush = [is_worth_it = effort > k_worth_flushing](const fs::path& path) {
+    if (is_worth_it) sync_to_disk(path);
+  };
   for (const std::string& name : names_in(staged_, marker_)) {
     check_name(name);
     flush(staged_ / name);

@@ -44,17 +44,20 @@ class StagedFolder {
   /// Hidden folder to which the files are written.
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return staged_; }
 
+  /// Time [s] since this object was made.
+  [[nodiscard]] double age() const;
+
   /// Puts the files into the target. A result that took more than a second is flushed to the disk before, so that it
   /// survives a loss of power; flushing a short run would take longer than the run.
+  /// @param effort  time [s] that the result took
   /// @throws std::runtime_error if a file cannot be put there, because a folder or a file of the user has its name. The
   /// target is then unchanged, unless publish() was moving files one by one.
-  void publish();
+  void publish(double effort);
 
  private:
   void make_parents();
   void make_staged();
   void check_name(const std::string& name) const;
-  void flush(const std::filesystem::path& path) const;
 
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::filesystem::path target_;

@@ -315,7 +315,7 @@ std::string write_calibration(const Calibration& calibration, const CalibrationR
     figure::write_whole(folder.path() / "report.md", calibration_report(calibration, result, problem.empty()));
     if (problem.empty()) problem = draw_report(calibration, result, folder.path());
   }
-  folder.publish();
+  folder.publish(folder.age());
   return problem;
 }
 

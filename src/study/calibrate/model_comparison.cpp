@@ -231,7 +231,7 @@ std::string write_comparison(std::span<const Calibration> calibrations, std::spa
     figure::write_whole(folder.path() / "report.md",
                         comparison_report(calibrations, results, comparison, problem.empty()));
   }
-  folder.publish();
+  folder.publish(folder.age());
   return problem;
 }
 

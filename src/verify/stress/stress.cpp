@@ -224,7 +224,7 @@ StressReport run_stress(const StressOptions& options) {
     if (!failure.text.empty()) write_text_file(folder.path() / failure.file, failure.text);
   }
   write_text_file(folder.path() / k_report, report.text());
-  folder.publish();
+  folder.publish(folder.age());
   return report;
 }
 
