@@ -35,8 +35,8 @@ struct ProgramInformation {
 ///   covariance = (J^T J)^-1
 struct ExpectedErrors {
   Uncertainty uncertainty;
-  // Of the scenario's parameters, each over its value. The machine's are nuisance parameters, which widen the errors of
-  // the others (D_s-optimality; Atkinson, Donev and Tobias (2007)).
+  // Criteria count the scenario's parameters, each over its value. The machine's are nuisance parameters, which widen
+  // the errors of the others (D_s-optimality; Atkinson, Donev and Tobias (2007)).
   double log_determinant = 0.0;     ///< natural logarithm of the determinant of the relative covariance; inf where a
                                     ///< parameter is not determined
   double relative_variances = 0.0;  ///< trace of the relative covariance; inf where a parameter is not determined

@@ -157,6 +157,10 @@ class PlanReader {
       const std::string& path = parameter.key.path;
       const SourceLocation place = place_of(free.table->find(path)->first.source(), free.place);
       const bool is_of_machine = path.starts_with(calibration::k_data);
+      if (path == calibration::k_compliance && !made_.machine.forces.empty()) {
+        faults_.add(place,
+                    fmt::format("'{}' is free, and [data] has a table of deflections; expected one of them", path));
+      }
       try {
         const double value = value_of(path);
         made_.values.push_back(value);
@@ -169,8 +173,10 @@ class PlanReader {
       }
     }
     faults_.throw_if_any();
-    for (const FreeParameter& parameter : made_.free) {
-      if (!parameter.key.path.starts_with(calibration::k_data)) paths_.push_back(parameter.key.path);
+    for (std::size_t k = 0; k < made_.free.size(); ++k) {
+      if (made_.free[k].key.path.starts_with(calibration::k_data)) continue;
+      paths_.push_back(made_.free[k].key.path);
+      values_.push_back(made_.values[k]);
     }
     if (paths_.empty()) faults_.add(free.place, "expected at least one free number of the scenario");
     faults_.throw_if_any();
@@ -219,7 +225,7 @@ class PlanReader {
       return false;
     }
     for (std::size_t k = 0; k < paths_.size(); ++k) {
-      if (program.scenario.sensitivities[k].value == made_.values[k]) continue;
+      if (program.scenario.sensitivities[k].value == values_[k]) continue;
       faults_.add(place, fmt::format("'{}' is free; expected its one value in the scenario", paths_[k]));
       return false;
     }
@@ -315,7 +321,8 @@ class PlanReader {
   Reading reading_;
   ExperimentPlan made_;
   NamedScenario scenario_;
-  std::vector<std::string> paths_;  ///< paths of the free numbers
+  std::vector<std::string> paths_;  ///< paths of the scenario's free numbers
+  std::vector<double> values_;      ///< their values in the scenario
   Measurable measurable_;           ///< columns of the program being read
 };
 

@@ -38,7 +38,7 @@ struct ExperimentPlan {
   Machine machine;                          ///< with which all programs are measured
   std::vector<ExperimentProgram> programs;  ///< at least one
 
-  /// True if the machine adds, or may add, to the displacement.
+  /// True if the machine adds, or may add, to what is measured.
   [[nodiscard]] bool has_machine() const noexcept;
 };
 

@@ -251,11 +251,27 @@ TEST_F(MachinePlanTest, TakesTheOffsetForZeroAndLeavesItOutOfTheCriteria) {
   EXPECT_NE(text.find("data.offset                0 mm"), std::string::npos) << text;
 }
 
+TEST_F(MachinePlanTest, DoesNotDependOnTheOrderOfTheFreeNumbers) {
+  const std::string frame_last = std::string(k_mdr_free) + k_machine_free + k_machine + k_mdr_program;
+  const std::string frame_first =
+      replaced(std::string(k_mdr_free), "[free]\n", std::string("[free]\n") + k_machine_free) + k_machine +
+      k_mdr_program;
+  const IdentifyResult last = identify(read(k_mdr, frame_last));
+  const IdentifyResult first = identify(read(k_mdr, frame_first));
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_NEAR(standard_error(first, (k + 2) % 4) / standard_error(last, k), 1.0, 1e-6) << k;
+  }
+}
+
 TEST_F(MachinePlanTest, RefusesAMachineThatCannotMeasureSo) {
   const auto fault = [&](const std::string& plan) { return first_fault(k_mdr, plan); };
   const std::string plan = std::string(k_mdr_free) + k_machine_free + k_machine + k_mdr_program;
   EXPECT_EQ(fault(replaced(plan, "20 nm/N", "300 nm/N")),
             "6:1: 'data.compliance' is 300 nm/N in [data], which is not between the bounds");
+  write_text(folder() / "frame.csv", "force[N],displacement[um]\n0,0\n100,2\n300,5\n");
+  EXPECT_EQ(fault(replaced(plan, "\"20 nm/N\"",
+                           "{ table = \"frame.csv\", force = \"force[N]\", displacement = \"displacement[um]\" }")),
+            "6:1: 'data.compliance' is free, and [data] has a table of deflections; expected one of them");
   EXPECT_EQ(fault(replaced(plan, "offset = \"30 um\"", "file = \"d.csv\"")),
             "8:1: key 'file' belongs to a calibration file; expected offset, force_offset or compliance");
   EXPECT_EQ(
