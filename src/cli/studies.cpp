@@ -67,8 +67,7 @@ void note_machine(const std::vector<fs::path>& runs, const std::string& data) {
     const std::string text = read_text_file(folder / "run.json", k_largest_data).text;
     if (text.find(k_without_machine) == std::string::npos) continue;
     say("note: {} is a run of the particle alone; '{}' is drawn as recorded, with what the machine adds. The folder of "
-        "the "
-        "calibration, after --data, has the data without it\n",
+        "the calibration, after --data, has the data without it\n",
         run.string(), data);
   }
 }

@@ -89,6 +89,10 @@ std::size_t run_all(const Sweep& plan, const fs::path& folder, int threads, Swee
                               if (!is_quiet) bar.show(done, of);
                             }});
   }();
+  if (is_quiet && outcome.runs_ended_early > 0) {
+    say("warning: {}: {} of {} runs refused, stopped or failed (columns status and reason)\n", plan.name,
+        outcome.runs_ended_early, outcome.runs_now);
+  }
   if (is_quiet) return outcome.runs_missing;
   report(plan, outcome, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), folder);
   return outcome.runs_missing;

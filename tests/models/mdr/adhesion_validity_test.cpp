@@ -122,15 +122,6 @@ TEST(MdrAdhesionWindow, EndsWhereTheConditionsTurn) {
   }
 }
 
-TEST(MdrAdhesionWindow, IsOpenWithoutARingAndWithoutYield) {
-  const Indenter indenter{ElasticProfile::ellipse, 0.3, 0.9};
-  EXPECT_EQ(adhesion_window(indenter, 1.1, 0.08, 0.0, Control::force).least, 0.0);
-  EXPECT_EQ(adhesion_window(indenter, 1.1, k_infinity, 0.1, Control::force).greatest, k_infinity);
-  // No surface energy opens a contact wider than its indenter.
-  EXPECT_EQ(adhesion_window(indenter, 1.1, 0.08, 0.9, Control::force).least, k_infinity);
-  EXPECT_EQ(adhesion_window(indenter, 1.1, 0.08, 1.0, Control::force).least, k_infinity);
-}
-
 class MdrAdhesionReference : public ::testing::TestWithParam<Control> {};
 
 TEST_P(MdrAdhesionReference, HasTheSamePeaksAndWindows) {
