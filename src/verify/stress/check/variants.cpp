@@ -253,7 +253,7 @@ std::optional<CheckedScenario> forth_and_back(CheckedScenario scenario) {
     const auto knows = [](const std::optional<Target>& target, Step::Kind kind) {
       return target && target->first == kind;
     };
-    is_possible = is_possible && first.until.empty() && knows(start.first, first.kind) &&
+    is_possible = is_possible && first.until.empty() && first.leg.is_whole() && knows(start.first, first.kind) &&
                   (!first.lateral || knows(start.lateral, first.lateral->kind));
     if (!is_possible) return;
     Step back = first;
