@@ -14,6 +14,9 @@ namespace {
 // Step coordinate of the output point at the end of a step that may end early, wherever that will be.
 constexpr double k_at_end = k_infinity;
 
+/// True if one time [s] lies after another one by more than round-off.
+bool is_later(double time, double other) { return time > other * (1.0 + k_same_value); }
+
 }  // namespace
 
 OutputRows::OutputRows(const Output& output, const StepClock& clock, Integrator& integrator, HistorySink& sink,
@@ -44,11 +47,16 @@ void OutputRows::place(const Leg& leg, double end, bool may_end_elsewhere) {
     points_.push_back({xi, clock_.time(xi)});
     if (may_end_elsewhere && j == output_.points) points_.back().xi = k_at_end;
   }
+  // The margin is one of times, so that an instant beside the end of a leg belongs to this leg or to the next one. Step
+  // coordinates of a short leg that begins late have the round-off of its times over its duration.
+  const double begin_of_leg = clock_.time(0.0);
+  const double end_of_leg = clock_.time(1.0);
   for (const double instant : output_.times) {
     if (clock_.duration == 0.0) break;
+    if (!is_later(instant, begin_of_leg) || is_later(instant, end_of_leg)) continue;
     const double xi = clock_.step_coordinate(instant);
-    if (!(xi > k_same_instant && xi < 1.0 + k_same_instant)) continue;
-    points_.push_back({xi > 1.0 - k_same_instant ? 1.0 : xi, instant});
+    const bool is_at_end = !is_later(end_of_leg, instant) || xi > 1.0 - k_same_instant;
+    points_.push_back({is_at_end ? 1.0 : xi, instant});
   }
 }
 
@@ -57,7 +65,7 @@ void OutputRows::end_step(double xi) {
 }
 
 std::optional<std::string> OutputRows::note_unreached_times(double end) const {
-  const auto is_beyond = [end](double instant) { return instant > end * (1.0 + k_same_value); };
+  const auto is_beyond = [end](double instant) { return is_later(instant, end); };
   const auto count = std::ranges::count_if(output_.times, is_beyond);
   if (count == 0) return std::nullopt;
   return fmt::format("{} of {} output times lie{} beyond the end of the program, t = {:.9g} s: no rows there", count,
@@ -116,8 +124,7 @@ void OutputRows::reach_joint(double xi, std::span<const double> y) {
 
 void OutputRows::pass_joint(bool has_events) {
   if (has_events) sink_.append(RowSide::before);
-  if (next_ < points_.size() && points_[next_].xi <= reached_ + k_same_instant) {
-    ++next_;
+  for (; next_ < points_.size() && points_[next_].xi <= reached_ + k_same_instant; ++next_) {
     sink_.append(RowSide::output);
   }
 }

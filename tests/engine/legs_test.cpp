@@ -134,6 +134,30 @@ TEST(Legs, HaveTimesWithoutSums) {
   EXPECT_EQ(run(hertz_pair(sine, 2)).last("time"), 1.1);
 }
 
+TEST(Legs, HaveARowAtEachOutputTimeHoweverLateTheyBegin) {
+  constexpr int k_rows = 1000;
+  for (const double before : {1.0, 1000.0}) {
+    std::vector<Step> steps{ramp(0.1, before)};
+    std::vector<double> times;
+    for (int k = 0; k < k_rows; ++k) {
+      const double begin = k / 1000.0;
+      const double end = (k + 1) / 1000.0;
+      steps.push_back(ramp(0.1 + 0.1 * end, end - begin));
+      steps.back().leg = {begin, end, true, begin, end};
+      times.push_back((1000.0 * before + k + 1) / 1000.0);
+    }
+    CheckedScenario scenario = hertz_scenario(Configuration::simple, steps);
+    scenario.output.times = times;
+    const TestRun result = run(scenario);
+    const std::vector<double> found = result.outputs("time");
+    ASSERT_EQ(found.size(), times.size() + 1) << before;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      EXPECT_NEAR(found[k + 1], times[k], 1e-12 * times[k]);
+      EXPECT_NEAR(result.outputs("axial.displacement")[k + 1], steps[k + 1].target, 1e-12) << times[k];
+    }
+  }
+}
+
 // --- forces of tables, from row to row
 
 /// A step of 3 s through forces at 1, 2, 2.25 and 3 s; the third one is zero.
