@@ -32,6 +32,7 @@ void UnmetDemands::note_open(double xi) {
 void UnmetDemands::note_begin(const StepPlan& plan, const StepClock& clock) {
   if (!plan.leg.is_first()) return;
   close_step();
+  std::ranges::fill(openings_, std::nullopt);
   note_starts(plan, clock);
   at_begin_.clear();
   for (std::size_t i = 0; i < plan.conditions.size(); ++i) at_begin_.push_back(guard_set_.value_at_begin(i));
@@ -76,17 +77,26 @@ void UnmetDemands::note_starts(const StepPlan& plan, const StepClock& clock) {
   }
 }
 
+void UnmetDemands::note_opening(std::size_t channel, const StepClock& clock) {
+  const std::optional<double>& since = open_since_[channel];
+  std::optional<double>& opening = openings_[channel];
+  if (!since) {
+    opening.reset();
+  } else if (!opening || *since > 0.0) {
+    opening = clock.time(*since);
+  }
+}
+
 void UnmetDemands::note_forces(const StepPlan& plan, const StepClock& clock, double xi) {
   for (std::size_t c = 0; c < open_since_.size(); ++c) {
+    note_opening(c, clock);
     const Ramp& ramp = plan.prescribed[c];
     const double force = ramp.value(xi);
     const bool was_open = open_since_[c] && xi - *open_since_[c] > k_same_instant;
     if (ramp.control != Control::force || force == 0.0 || !was_open) continue;
     std::optional<UnborneForce>& unborne = unborne_[c];
-    if (!unborne) unborne = {.step = clock.number, .open_since = clock.time(*open_since_[c])};
-    if (std::abs(force) <= std::abs(unborne->force)) continue;
-    unborne->force = force;
-    unborne->time = clock.time(xi);
+    if (unborne && std::abs(force) <= std::abs(unborne->force)) continue;
+    unborne = {.step = clock.number, .force = force, .time = clock.time(xi), .open_since = *openings_[c]};
   }
 }
 

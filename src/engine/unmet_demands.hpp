@@ -16,10 +16,14 @@ namespace monograin {
 class UnmetDemands {
  public:
   UnmetDemands(const Scene& scene, const GuardSet& guard_set)
-      : scene_(scene), guard_set_(guard_set), open_since_(scene.channels.size()), unborne_(scene.channels.size()) {}
+      : scene_(scene),
+        guard_set_(guard_set),
+        open_since_(scene.channels.size()),
+        openings_(scene.channels.size()),
+        unborne_(scene.channels.size()) {}
 
   void begin_step(double xi);
-  /// Records since when in this step each channel's contact has been open.
+  /// Records since when in this leg each channel's contact has been open.
   void note_open(double xi);
 
   /// A leg begins. If it is the first one of its step, keeps the values of the conditions' quantities there, and notes
@@ -44,10 +48,13 @@ class UnmetDemands {
   };
   void close_step();
   void note_starts(const StepPlan& plan, const StepClock& clock);
+  /// Keeps the opening of a contact over the legs of a step.
+  void note_opening(std::size_t channel, const StepClock& clock);
 
   const Scene& scene_;
   const GuardSet& guard_set_;
-  std::vector<std::optional<double>> open_since_;     ///< step coordinate, for each channel; empty while it is closed
+  std::vector<std::optional<double>> open_since_;  ///< step coordinate, for each channel; empty while it is closed
+  std::vector<std::optional<double>> openings_;    ///< [s], in this step; of each channel that is open at a leg's end
   std::vector<std::optional<UnborneForce>> unborne_;  ///< of the present step, for each channel
   std::vector<double> at_begin_;                      ///< of the step, by condition
   ProgramNotes notes_;

@@ -201,6 +201,23 @@ TEST(ForcesOfTables, AreNotBorneBelowZeroAsAWarningSays) {
             "1.71428571 s)");
 }
 
+TEST(ForcesOfTables, NameTheOpeningThatBelongsToTheLeastForce) {
+  const std::vector<std::pair<double, double>> rows{{1.0, 0.010}, {2.0, -0.002}, {3.0, -0.001}, {4.0, 0.0},
+                                                    {5.0, 0.012}, {7.0, -0.004}, {8.0, -0.005}};
+  std::vector<Step> steps;
+  double begin = 0.0;
+  for (const auto& [time, force] : rows) {
+    steps.push_back(force_ramp(force, time - begin));
+    steps.back().leg = {begin / 8.0, time / 8.0, begin != 4.0, begin, time};
+    begin = time;
+  }
+  const TestRun result = run(hertz_scenario(Configuration::simple, steps));
+  ASSERT_EQ(result.record.warnings.size(), 1U);
+  EXPECT_EQ(result.record.warnings[0],
+            "step 1: no contact bears the force that is prescribed to 'axial' (-0.005 N at t = 8 s; open since t = 6.5 "
+            "s)");
+}
+
 TEST(ForcesOfTables, EndWithTheStepThatAConditionEnds) {
   std::vector<Step> steps = forces_below_zero();
   for (Step& step : steps) step.until = {{.event = "contact-lost"}};
