@@ -192,9 +192,7 @@ class LoadingReader {
       if (!wall.steps.empty()) programs.push_back(&wall.steps);
     }
     if (programs.size() < 2) return;
-    share_times(programs);
-    std::size_t ramps = 0;
-    for (const std::vector<Step>* program : programs) ramps += program->size();
+    const std::size_t ramps = share_times(programs, k_most_steps);
     if (ramps <= static_cast<std::size_t>(k_most_steps)) return;
     reading_.faults.add(section_.key_place("wall"),
                         fmt::format("the programs of the walls have {} ramps, each divided at the times of all tables "

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scenario/scenario.hpp"
@@ -115,6 +116,56 @@ TEST(SharedTimes, AreAtMostAsManyAsRampsOfPrograms) {
   EXPECT_EQ(late.size(), 3U);
   EXPECT_EQ(hold.size(), 3U);
   EXPECT_EQ(late[0].leg, table[0].leg);
+}
+
+/// A step through values at given times.
+std::vector<Step> through(const std::vector<std::pair<double, double>>& rows) {
+  std::vector<Step> steps;
+  double begin = 0.0;
+  const double total = rows.back().first;
+  for (const auto& [time, value] : rows) {
+    Step& step = steps.emplace_back();
+    step.kind = Step::Kind::displacement;
+    step.target = value;
+    step.duration = time - begin;
+    step.leg = {begin / total, time / total, true, begin, time};
+    begin = time;
+  }
+  return steps;
+}
+
+TEST(SharedTimes, OfOneProgramAreNeverOne) {
+  const double late = 2.000000001;
+  std::vector<Step> table = through({{2.0, 0.01}, {late, 0.02}, {4.0, 0.03}});
+  std::vector<Step> other = through({{0.5, 0.1}, {2.0 + 0.5e-9, 0.2}, {4.0, 0.4}});
+  std::vector<Step> hold(1);
+  hold[0].duration = 4.0;
+  std::vector<std::vector<Step>*> programs{&table, &hold};
+  EXPECT_EQ(share_times(programs), 6U);
+  EXPECT_EQ(ends(table), (std::vector<double>{0.01, 0.02, 0.03}));
+  for (const Step& step : table) EXPECT_EQ(step.share, 1.0);
+  EXPECT_EQ(table[1].leg.end_time, late);
+
+  std::vector<std::vector<Step>*> of_three{&other, &table, &hold};
+  EXPECT_EQ(share_times(of_three), 12U);
+  expect_near(ends(table), {0.0025, 0.01, 0.02, 0.03});
+  EXPECT_EQ(ends(other)[1], 0.2);
+  EXPECT_EQ(ends(other)[3], 0.4);
+  for (const std::vector<Step>* program : of_three) {
+    for (const Step& step : *program) EXPECT_TRUE(step.share > 0.0 && step.share <= 1.0) << step.share;
+    EXPECT_TRUE(program->back().leg.is_last());
+  }
+}
+
+TEST(SharedTimes, AreCountedBeforeProgramsAreDivided) {
+  std::vector<Step> table = through({{1.0, 0.01}, {2.0, 0.02}, {4.0, 0.03}});
+  std::vector<Step> hold(1);
+  hold[0].duration = 4.0;
+  std::vector<std::vector<Step>*> programs{&table, &hold};
+  EXPECT_EQ(share_times(programs, 5), 6U);
+  EXPECT_EQ(hold.size(), 1U);
+  EXPECT_EQ(share_times(programs, 6), 6U);
+  EXPECT_EQ(hold.size(), 3U);
 }
 
 }  // namespace
