@@ -30,9 +30,10 @@ struct Point {
 };
 
 /// Adds points where the value passes zero upwards: a contact that is lost under a negative force is made again there.
-std::vector<Point> with_zeros(const std::vector<Point>& points, std::optional<double> start) {
+/// The first ramp has none. Only a run shows where it begins, and it begins below zero with a closed contact only.
+std::vector<Point> with_zeros(const std::vector<Point>& points) {
   std::vector<Point> result;
-  Point last{.value = start.value_or(0.0)};
+  Point last;
   for (const Point& point : points) {
     if (last.value < 0.0 && point.value > 0.0) {
       const double time = std::lerp(last.time, point.time, last.value / (last.value - point.value));
@@ -46,7 +47,7 @@ std::vector<Point> with_zeros(const std::vector<Point>& points, std::optional<do
 /// Ramps from point to point.
 /// @param start  value at time 0; none where the course begins with a ramp from the present value
 std::vector<Step> ramps_through(std::vector<Point> points, std::optional<double> start, Control control) {
-  if (control == Control::force) points = with_zeros(points, start);
+  if (control == Control::force) points = with_zeros(points);
   const double end = points.empty() ? 0.0 : points.back().time;
   std::vector<Step> ramps;
   Point last;

@@ -106,6 +106,17 @@ TEST(Table, OfForcesEndsARampWhereItComesBackToZero) {
   EXPECT_EQ(steps[3].leg, (Leg{0.75, 1.0, false, 2.25, 3.0}));
 }
 
+TEST(Table, OfForcesBelowZeroAtItsBeginningHasOneRampToItsSecondRow) {
+  const std::vector<Step> steps = steps_of(
+      with_loading("[loading]\nconfiguration = \"simple\"\nsteps = [{ displacement = 1e-4, duration = 1 }, { force = { "
+                   "table = \"path.csv\", time = \"t\", value = \"F\" } }]\n"),
+      "t[s],F[N]\n0,-10\n1,100\n2,50\n");
+  ASSERT_EQ(steps.size(), 3U);
+  EXPECT_EQ(steps[1].target, 100.0);
+  EXPECT_EQ(steps[1].duration, 1.0);
+  EXPECT_EQ(steps[1].start, -10.0);
+}
+
 TEST(Table, HasColumnsWithNumbersToo) {
   const std::string numbers = R"({ table = "path.csv", time = 1, value = 2 })";
   const std::vector<Step> steps = steps_of(with_displacement(numbers), "0,0\n2,1e-3\n");
