@@ -107,7 +107,8 @@ class TableReader {
     }
     files.insert_or_assign(name_, file.text);
     const std::size_t before = reading_.faults.size();
-    data_ = parse_measured(file.text, origin_, {request("time"), request("value")}, reading_.faults);
+    data_ = parse_measured(file.text, origin_, {request("time"), request("value")}, reading_.faults,
+                           {.may_have_trailer = false});
     if (reading_.faults.size() > before) return {};
     const auto to_seconds = factor_of(0, Dimension::time);
     const auto to_si = factor_of(1, value_.dimension);

@@ -137,7 +137,7 @@ SampledCurve parse_columns(std::string_view text, const std::string& origin, std
     wanted.push_back({std::string(column.name), named_at, fmt::format("{}: column '{}'", naming, column.name)});
   }
   const std::size_t before = faults.size();
-  MeasuredData data = parse_measured(text, origin, wanted, faults);
+  MeasuredData data = parse_measured(text, origin, wanted, faults, {.may_have_trailer = false});
   SampledCurve table{.text = std::move(data.text)};
   if (faults.size() > before) return table;
   std::map<std::pair<double, double>, std::size_t> lines;  // lines of earlier rows, by their first two columns

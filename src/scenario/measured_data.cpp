@@ -28,6 +28,17 @@ bool is_missing(std::string_view text) {
   return std::ranges::find(k_missing, word) != k_missing.end();
 }
 
+/// True for a text that begins with a digit, or with one after a sign, a decimal sign or both.
+bool begins_as_a_number(std::string_view text) {
+  constexpr std::string_view k_true_minus = "\xE2\x88\x92";  // U+2212
+  if (text.starts_with(k_true_minus))
+    text.remove_prefix(k_true_minus.size());
+  else if (text.starts_with('+') || text.starts_with('-'))
+    text.remove_prefix(1);
+  if (text.starts_with('.') || text.starts_with(',')) text.remove_prefix(1);
+  return !text.empty() && text.front() >= '0' && text.front() <= '9';
+}
+
 /// True for a time of day or a duration such as "00:01:30".
 bool is_clock_time(std::string_view text) {
   const auto is_part_of_it = [](char c) { return (c >= '0' && c <= '9') || c == ':' || c == '.' || c == ','; };
@@ -161,7 +172,7 @@ class DataParser {
       if (line_ < data_.layout.first_line) continue;
       std::vector<Cell> cells = cells_of(line, data_.layout.separator);
       const auto is_empty = [](const Cell& cell) { return cell.text.empty(); };
-      if ((is_comment(line) && !is_missing(cells.front().text)) || std::ranges::all_of(cells, is_empty)) continue;
+      if (std::ranges::all_of(cells, is_empty) || (is_comment(line) && !is_missing(cells.front().text))) continue;
       if (is_text(cells)) {
         texts.push_back({line_, std::move(cells)});
         continue;
@@ -170,7 +181,7 @@ class DataParser {
       take_row(cells);
     }
     const bool has_rows = !data_.lines.empty() || !data_.left_out.empty();
-    if (!has_rows) take_texts(texts);
+    if (!has_rows || !format_.may_have_trailer) take_texts(texts);
     for (const TextLine& line : texts) data_.trailer.push_back(line.number);
     if (found_ >= k_most_table_faults && !rest.empty()) {
       ++line_;
@@ -183,9 +194,9 @@ class DataParser {
     std::vector<Cell> cells;
   };
 
-  /// True for cells that hold a text and no number.
-  [[nodiscard]] bool is_text(const std::vector<Cell>& cells) const {
-    const auto is_number = [this](const Cell& cell) { return number_in(cell.text, data_.layout.decimal).has_value(); };
+  /// True for cells that hold a text and nothing that begins as a number does.
+  [[nodiscard]] static bool is_text(const std::vector<Cell>& cells) {
+    const auto is_number = [](const Cell& cell) { return begins_as_a_number(cell.text); };
     return std::ranges::none_of(cells, is_number) &&
            !std::ranges::all_of(cells, [](const Cell& cell) { return is_missing(cell.text); });
   }

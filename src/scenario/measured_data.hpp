@@ -39,7 +39,7 @@ struct MeasuredData {
 /// Reads a table of numbers. Lines that begin with '#', blank lines, lines of separators, and columns that were not
 /// requested do not count. Every cell has to be a finite number. A cell that is empty or marks a missing number (nan,
 /// n/a, a dash, an error of a spreadsheet) leaves its row out, as long as `format` admits so many. Lines of text
-/// without any number below the last row are left out.
+/// below the last row, in which no cell begins as a number does, are left out if `format` admits them.
 ///
 /// The result is only meaningful if nothing was added to `faults`. Reports the first twenty faults of the table, with
 /// line and column.

@@ -20,6 +20,7 @@ struct TableFormat {
   Units units = Units::found;          ///< row: a row of units stands below the headings
   std::vector<std::string> unit_of{};  ///< units of the columns in their order; empty: as in the file
   double most_missing = 0.0;           ///< share of the rows that may lack a number in a requested column
+  bool may_have_trailer = true;        ///< lines of text may stand below the table
 };
 
 /// Layout as it was found. Lines are counted from 1 as an editor does; 0: there is none.

@@ -149,6 +149,12 @@ TEST(Table, SaysInWhichRowAndColumnAFaultIs) {
             Lines{"path.csv:2:1: the table ends where it begins; expected a later row"});
 }
 
+TEST(Table, HasNoTextsBelowIt) {
+  EXPECT_EQ(faults(with_displacement(k_table), "t[s],x[mm]\n0,0\n1,1\nEND\n"),
+            Lines{"path.csv:4:1: 1 cell where there are 2 headings; expected a cell for each, and nothing below the "
+                  "table"});
+}
+
 TEST(Table, SaysWhichColumnsItHas) {
   EXPECT_EQ(faults(with_displacement(k_table), "t[s],x [N]\n0,0\n1,1\n"),
             Lines{"die.toml:12:63: value = \"x[mm]\": path.csv has no such column; expected one of t[s], x [N]"});

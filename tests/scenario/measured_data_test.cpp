@@ -197,6 +197,34 @@ TEST(MachineFiles, EndWithLinesOfTextThatAreLeftOut) {
   EXPECT_EQ(read("Weg;Kraft\na;b\n").faults.size(), 2U) << "no row above";
 }
 
+TEST(MachineFiles, EndWithoutCellsThatBeginNumbers) {
+  EXPECT_EQ(read("Weg;Kraft\n1.5;2\n3.5;4\n4,5;5,5\n").faults,
+            (Cells{"d.csv:4:1: Weg = 4,5: expected a finite number; the decimal sign of the rows above is '.'",
+                   "d.csv:4:5: Kraft = 5,5: expected a finite number; the decimal sign of the rows above is '.'"}));
+  for (const char* cell : {"5.5.5", "-3x", "+.5.", ",5e", "−7 N"}) {
+    EXPECT_EQ(read(std::string("Weg;Kraft\n1.5;2\n3.5;4\nMax;") + cell + "\n").faults.size(), 2U) << cell;
+  }
+}
+
+TEST(MachineFiles, EndWithLinesOfTextWhereTheyMayOnly) {
+  EXPECT_EQ(
+      read("Weg;Kraft\n1;2\n3;4\nEND\n\n", {.may_have_trailer = false}).faults,
+      Cells{"d.csv:4:1: 1 cell where there are 2 headings; expected a cell for each, and nothing below the table"});
+}
+
+TEST(MachineFiles, MayHaveBlankLinesBetweenRowsAndAtTheirEnd) {
+  for (const char separator : {',', ';', '\t', ' '}) {
+    std::string text = "Weg;Kraft\n1;2\n\n3;4\n\n  \n\r\n\n";
+    for (char& c : text) {
+      if (c == ';') c = separator;
+    }
+    const Outcome outcome = read(text);
+    EXPECT_EQ(outcome.faults, Cells()) << text;
+    EXPECT_EQ(outcome.data.columns[1].values, (std::vector<double>{2.0, 4.0})) << text;
+    EXPECT_TRUE(outcome.data.trailer.empty()) << text;
+  }
+}
+
 TEST(MachineFiles, MayBeginARowWithAnErrorOfASpreadsheet) {
   const Outcome outcome = read("t,Weg,Kraft\n0,1,2\n#N/A,3,4\n# a comment\n2,5,6\n");
   EXPECT_EQ(outcome.faults, Cells());
