@@ -19,10 +19,16 @@ constexpr std::size_t k_least_short_runs = 3;  ///< number of such paths from wh
 constexpr double k_noise_factor = 9.0;         ///< least turn over the noise; none of thousands of rows exceeds it
 constexpr double k_turn_reach = 30.0;          ///< path beside a turn that shows where it is, over the noise
 constexpr double k_noise_of_median = 0.6745 * 2.449489742783178;  ///< median of second differences over the noise
-constexpr std::size_t k_least_hold = 5;                           ///< rows
+constexpr double k_least_median = 0.1;   ///< of second differences of noise, over the median of its short paths
+constexpr std::size_t k_least_hold = 5;  ///< rows
 constexpr double k_near_extreme = 8.0;   ///< reach of a hold's rows from the extreme one, over the noise
 constexpr int k_hold_rounds = 20;        ///< of the search for the ends of a hold
 constexpr double k_better_hold = 20.0;   ///< least F of the fit with a hold against that by two lines
+constexpr double k_below_extreme =
+    2.0;                             ///< distance of a hold from the extreme x beyond that of its rows, over the noise
+constexpr double k_level = 2.5;      ///< largest slope of a hold, over its standard error
+constexpr double k_bad_lines = 2.0;  ///< mean squared distance from lines beside a turn that are not straight
+constexpr int k_reaches = 3;         ///< number of windows, each of half the reach of the one before
 constexpr std::size_t k_least_line = 3;  ///< least number of rows beside a turn that show where it is
 constexpr double k_equal_steps = 0.05;   ///< largest difference of equal steps of x, over the step
 constexpr double k_doubt_of_row = 4.0;   ///< error of the row where lines meet, over the difference of their steps
@@ -174,6 +180,12 @@ namespace {
   return short_runs;
 }
 
+[[nodiscard]] double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 }  // namespace
 
 double noise_in(std::span<const double> x) {
@@ -181,9 +193,11 @@ double noise_in(std::span<const double> x) {
   if (short_runs.size() < k_least_short_runs) return 0.0;
   std::vector<double> differences;
   for (std::size_t k = 2; k < x.size(); ++k) differences.push_back(std::abs(x[k] - 2.0 * x[k - 1] + x[k - 2]));
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::ranges::nth_element(differences, middle);
-  return std::min(*middle / k_noise_of_median, std::ranges::max(short_runs));
+  double median = median_of(std::move(differences));
+  // Most of the rows of x with few digits are equal to the one before, and have no second difference.
+  const double of_short_runs = median_of(short_runs);
+  if (median < k_least_median * of_short_runs) median = of_short_runs;
+  return std::min(median / k_noise_of_median, std::ranges::max(short_runs));
 }
 
 namespace {
@@ -212,28 +226,33 @@ namespace {
   return row;
 }
 
-/// x of a turn in noise: where two straight lines meet that fit the rows of both sides best, whichever of the rows next
-/// to the turn belongs to which.
-[[nodiscard]] double x_where_lines_meet(std::span<const double> x, const WindowOfRows& window, std::size_t turn) {
+/// A turn in noise without a hold.
+struct MeetingLines {
+  double x = 0.0;
+  double squares = k_infinity;  ///< sum of the squared distances of all rows of the window
+};
+
+/// Where two straight lines meet that fit the rows of both sides best, whichever of the rows next to the turn belongs
+/// to which.
+[[nodiscard]] MeetingLines meeting_lines(std::span<const double> x, const WindowOfRows& window, std::size_t turn) {
   const std::size_t first = window.first();
   const std::size_t last = window.last();
   const std::size_t lowest = std::max(first + 1, turn - std::min(turn, k_turn_rows));
   const std::size_t highest = std::min(last - 2, turn + k_turn_rows);
-  double least = k_infinity;
-  double met = x[turn];
+  MeetingLines best{.x = x[turn]};
   for (std::size_t middle = lowest; middle <= highest; ++middle) {
     const Line before = window.line(first, middle + 1);
     const Line after = window.line(middle + 1, last + 1);
-    if (!(before.squares + after.squares < least)) continue;
-    least = before.squares + after.squares;
+    if (!(before.squares + after.squares < best.squares)) continue;
+    best.squares = before.squares + after.squares;
     const double row = (after.at(0.0) - before.at(0.0)) / (before.slope - after.slope);
     const bool meet = row >= static_cast<double>(first) && row <= static_cast<double>(last);
     const double at = meet ? row : static_cast<double>(middle);
     const double x_there = 0.5 * (before.at(at) + after.at(at));
     // Lines beside a dwell meet beyond it, but x has not been farther than the turn.
-    met = x[turn] > x[first] ? std::min(x_there, x[turn]) : std::max(x_there, x[turn]);
+    best.x = x[turn] > x[first] ? std::min(x_there, x[turn]) : std::max(x_there, x[turn]);
   }
-  return met;
+  return best;
 }
 
 /// Rows of a hold.
@@ -266,6 +285,18 @@ struct Hold {
   return hold;
 }
 
+/// Whether a hold lies at the extreme x as nearly as its rows scatter, and is level.
+[[nodiscard]] bool is_at_turn(std::span<const double> x, const WindowOfRows& window, const Hold& hold, std::size_t turn,
+                              double noise) {
+  const Line line = window.line(hold.begin, hold.end);
+  const auto rows = static_cast<double>(hold.rows());
+  const double scatter = std::max(noise, std::sqrt(line.squares / (rows - 2.0)));
+  // The largest of n normal values is expected below this.
+  const double largest = std::sqrt(2.0 * std::log(rows));
+  if (std::abs(x[turn] - line.x) > (largest + k_below_extreme) * scatter) return false;
+  return std::abs(line.slope) <= k_level * scatter / std::sqrt(rows * (rows * rows - 1.0) / 12.0);
+}
+
 /// Hold at a turn in noise; without rows if x is not held there.
 [[nodiscard]] Hold hold_at(std::span<const double> x, const WindowOfRows& window, std::size_t turn, double noise) {
   const auto is_near = [&](std::size_t row) { return std::abs(x[row] - x[turn]) <= k_near_extreme * noise; };
@@ -274,7 +305,7 @@ struct Hold {
   while (begin > window.first() && is_near(begin - 1)) --begin;
   while (end <= window.last() && is_near(end)) ++end;
   const Hold hold = hold_near(window, begin, end);
-  if (hold.rows() == 0) return {};
+  if (hold.rows() == 0 || !is_at_turn(x, window, hold, turn, noise)) return {};
   double by_lines = k_infinity;
   for (std::size_t middle = window.first() + 1; middle + 1 < window.last(); ++middle) {
     const double sum =
@@ -286,20 +317,29 @@ struct Hold {
   return by_lines - hold.squares > k_better_hold * variance ? hold : Hold{};
 }
 
-/// A turn of x with noise.
+/// A turn of x with noise. Where the rows beside it are not on straight lines, as those with a dwell are not, fewer of
+/// them show where it is.
 [[nodiscard]] Turn turn_in_noise(std::span<const double> x, std::size_t begin, std::size_t extreme, std::size_t end,
                                  double noise) {
-  const std::size_t first = row_beside(x, extreme, -1, begin, k_turn_reach * noise);
-  const std::size_t last = row_beside(x, extreme, 1, end, k_turn_reach * noise);
-  if (last - first < 2 * k_least_line) return {.last_row = extreme, .x = x[extreme]};
-  const WindowOfRows window(x, first, last);
-  const Hold hold = hold_at(x, window, extreme, noise);
-  if (hold.rows() == 0) return {.last_row = extreme, .x = x_where_lines_meet(x, window, extreme)};
-  return {.last_row = hold.end - 1,
-          .x = window.line(hold.begin, hold.end).x,
-          .is_known = true,
-          .held_begin = hold.begin,
-          .held_end = hold.end};
+  Turn turn{.last_row = extreme, .x = x[extreme]};
+  double reach = k_turn_reach * noise;
+  for (int k = 0; k < k_reaches; ++k, reach *= 0.5) {
+    const std::size_t first = row_beside(x, extreme, -1, begin, reach);
+    const std::size_t last = row_beside(x, extreme, 1, end, reach);
+    if (last - first < 2 * k_least_line) break;
+    const WindowOfRows window(x, first, last);
+    if (const Hold hold = hold_at(x, window, extreme, noise); hold.rows() > 0) {
+      return {.last_row = hold.end - 1,
+              .x = window.line(hold.begin, hold.end).x,
+              .is_known = true,
+              .held_begin = hold.begin,
+              .held_end = hold.end};
+    }
+    const MeetingLines lines = meeting_lines(x, window, extreme);
+    turn.x = lines.x;
+    if (lines.squares <= k_bad_lines * noise * noise * static_cast<double>(last + 1 - first)) break;
+  }
+  return turn;
 }
 
 /// Largest difference of consecutive steps of x from row `first` to row `last`, over the largest step.

@@ -39,8 +39,9 @@ struct Excursion {
 [[nodiscard]] std::vector<std::size_t> turning_points(std::span<const double> x);
 
 /// Standard deviation of the noise of x: from the median of its second differences, which a ramp does not have, but not
-/// more than the longest path of at most two rows between turns, because uneven steps have second differences, too. 0
-/// if there are less than three such paths.
+/// more than the longest path of at most two rows between turns, because uneven steps have second differences, too. If
+/// most rows are equal to the one before, as those of a display with few digits are, the median of these paths takes
+/// the place of that of the differences. 0 if there are less than three such paths.
 [[nodiscard]] double noise_in(std::span<const double> x);
 
 /// Where x turns, or begins or ends.
@@ -57,9 +58,11 @@ struct Turn {
 /// The turns of a curve whose rows are few, or have noise. x turns where straight lines through the rows of both sides
 /// meet, because the extreme row has the largest noise, and because x of rows at equal times is farthest between two of
 /// them. If x is held there, it turns at the mean of the hold: at least five rows at constant x between the two lines,
-/// if that fits the rows better than the lines alone by more than noise would. Without noise the lines need at least
-/// three rows in equal steps on each side; otherwise x turns in the extreme row, and equal rows are a hold. The first
-/// and the last row have their own x.
+/// if that fits the rows better than the lines alone by more than noise would, if their slope is not significant, and
+/// if their mean is as near to the extreme x as that of noise. Where the rows are far from such lines, half or a
+/// quarter of the path beside the turn shows where it is. Without noise the lines need at least three rows in equal
+/// steps on each side; otherwise x turns in the extreme row, and equal rows are a hold. The first and the last row have
+/// their own x.
 /// @param points  turning_points() of x
 [[nodiscard]] std::vector<Turn> turns_of(std::span<const double> x, std::span<const std::size_t> points);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -300,6 +301,75 @@ TEST(TurningPoints, OfARampAndItsWayBackHaveNoHold) {
       for (const Turn& turn : turns_of(x, turning_points(x))) EXPECT_EQ(turn.held_rows(), 0U) << step << ' ' << seed;
     }
   }
+}
+
+TEST(TurningPoints, OfDataWithFewDigitsAreNotTheirFlicker) {
+  // Steps of half the noise, displayed in whole numbers: most rows are equal to the one before.
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Values x = through({0, 80, 20}, 800, 0.2, seed);
+    for (double& value : x) value = std::round(value);
+    EXPECT_EQ(turning_points(x).size(), 3U) << seed;
+    EXPECT_GT(noise_in(x), 0.3) << seed << ": a step of the display has a deviation of 0.29";
+    EXPECT_LT(noise_in(x), 1.0) << seed;
+  }
+}
+
+/// Turns of a path in noise, near its peak.
+struct TurnsInNoise {
+  double mean = 0.0;  ///< of x
+  int holds = 0;
+};
+
+constexpr unsigned k_seeds = 40;
+constexpr double k_peak = 80.0;
+constexpr double k_deviation = 0.2;
+
+/// Up to the peak in steps of 0.5, and then as a function of the row after it.
+template <class Path>
+TurnsInNoise turns_in_noise(Path after, int rows) {
+  Values path = through({0, k_peak}, 160, 0.0);
+  for (int row = 1; row <= rows; ++row) path.push_back(after(row));
+  TurnsInNoise found;
+  for (unsigned seed = 0; seed < k_seeds; ++seed) {
+    Values x = path;
+    std::mt19937 generator(seed);
+    std::normal_distribution<double> error(0.0, k_deviation);
+    for (double& value : x) value += error(generator);
+    const std::vector<Turn> turns = turns_of(x, turning_points(x));
+    EXPECT_EQ(turns.size(), 3U) << seed;
+    found.mean += turns[1].x / k_seeds;
+    if (turns[1].held_rows() > 0) ++found.holds;
+  }
+  return found;
+}
+
+TEST(TurningPoints, AreNotInADwellBelowThePeak) {
+  for (const double depth : {3.0, 4.0, 5.0}) {
+    // Down in 10 rows, held for 60, and down again.
+    const auto path = [depth](int row) {
+      if (row <= 10) return k_peak - 0.1 * depth * row;
+      return k_peak - depth - 0.2 * std::max(row - 70, 0);
+    };
+    const TurnsInNoise found = turns_in_noise(path, 160);
+    EXPECT_NEAR(found.mean, k_peak, 0.75 * k_deviation) << depth;
+    EXPECT_LE(found.holds, 4) << depth << ": a tenth";
+  }
+}
+
+TEST(TurningPoints, InAHoldAboveADwellLieOnTheHold) {
+  const auto path = [](int row) {
+    if (row <= 60) return k_peak;
+    if (row <= 70) return k_peak - 0.3 * (row - 60);
+    return k_peak - 3.0 - 0.2 * std::max(row - 130, 0);
+  };
+  const TurnsInNoise found = turns_in_noise(path, 220);
+  EXPECT_NEAR(found.mean, k_peak, 0.25 * k_deviation);
+  EXPECT_EQ(found.holds, static_cast<int>(k_seeds));
+}
+
+TEST(TurningPoints, OfAnUnloadingThatStartsLevelLieAtItsPeak) {
+  const TurnsInNoise found = turns_in_noise([](int row) { return k_peak - 4.0 * (row / 60.0) * (row / 60.0); }, 99);
+  EXPECT_NEAR(found.mean, k_peak, 0.6 * k_deviation);
 }
 
 TEST(TurningPoints, OfExactDataInAHoldHaveItsRows) {
