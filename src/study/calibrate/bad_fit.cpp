@@ -244,9 +244,11 @@ std::vector<std::string> warnings_of(const Calibration& calibration, const Calib
                                                     result.explained < 0.0 ? "worse than a constant" : "bad",
                                                     measure_of(calibration), result.explained);
   const std::string cause = likely_cause(calibration, fit);
-  warning += cause.empty()
-                 ? "; neither another unit nor sign nor first touch makes it good: look at data, law and bounds"
-                 : "; likely cause: " + cause;
+  warning +=
+      cause.empty()
+          ? "; no other unit, sign or first touch, and neither half nor twice the displacement makes it good: check "
+            "data, law and bounds"
+          : "; likely cause: " + cause;
   return {std::move(warning)};
 }
 

@@ -144,7 +144,7 @@ struct CalibrationResult {
   std::size_t largest_at = 0;         ///< row of the largest residual
   double r_squared = 0.0;             ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted; nan if y is constant
   double explained = 0.0;             ///< 1 - cost / (cost of the best constant); nan if y is constant
-  std::vector<double> particle;       ///< displacement at the particle in every row; empty if the machine adds nothing
+  std::vector<double> particle;       ///< displacement at the particle in every row; empty if the machine adds none
   std::vector<std::string> notes;     ///< notes for the user
   std::vector<std::string> warnings;  ///< why the fit is not to be trusted, with the likely cause
 

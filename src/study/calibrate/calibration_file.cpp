@@ -495,10 +495,10 @@ class CalibrationReader {
   [[nodiscard]] std::vector<double> weights_by_noise(const ColumnSpec* column, const MeasuredData& measured,
                                                      const MeasuredQuantity& y, const MeasuredCurve& curve) {
     const std::size_t before = faults_.size();
-    double factor = 0.0;  // unit of the column
+    double factor = 0.0;  // unit of the column, and scale of y
     if (column != nullptr) {
       MeasuredQuantity quantity{.unit = measured.columns[2].unit, .si = y.si};
-      factor = unit_factor(quantity, *column).value_or(0.0);
+      factor = unit_factor(quantity, *column).value_or(0.0) * std::abs(curve.scales[1]);
     }
     std::vector<double> weights;
     std::size_t found = 0;

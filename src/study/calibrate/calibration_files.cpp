@@ -258,11 +258,11 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
   std::vector<Column> columns{{x.observable, x.si, {}}, {y.observable, y.si, {}}, {"fit", y.si, {}},
                               {"residual", y.si, {}},   {"band_lower", y.si, {}}, {"band_upper", y.si, {}},
                               {"weight", inverse, {}}};
-  const bool has_machine = !result.particle.empty();
+  const bool has_displacement = !result.particle.empty();
   const bool moves_x = calibration.machine_moves_x();
-  const MeasuredQuantity& moving = moves_x ? y : x;  // the force, if there is one
-  const bool has_force = has_machine && moving.observable.ends_with(".force");
-  if (has_machine) columns.push_back({k_particle_displacement, "m", {}});
+  const MeasuredQuantity& moving = y.observable.ends_with(".force") ? y : x;  // the force, if there is one
+  const bool has_force = calibration.has_machine() && moving.observable.ends_with(".force");
+  if (has_displacement) columns.push_back({k_particle_displacement, "m", {}});
   if (has_force) columns.push_back({k_particle_force, "N", {}});
   const bool has_several = calibration.curves.size() > 1;
   if (has_several) columns.push_back({"curve", "", {}});
@@ -285,7 +285,7 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
     const double band = result.fit.band[row];
     std::vector<double> cells{x.values[row], y.values[row],      fit, y.values[row] - fit, fit - band,
                               fit + band,    result.weights[row]};
-    if (has_machine) cells.push_back(result.particle[row] + (moves_x ? 0.0 : y.values[row] - fit));
+    if (has_displacement) cells.push_back(result.particle[row] + (moves_x ? 0.0 : y.values[row] - fit));
     if (has_force) {
       const Machine machine = calibration.machine_of(calibration.curve_of(row), result.solution.parameters);
       cells.push_back(moving.values[row] - machine.force_offset);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "engine/drive.hpp"
@@ -13,6 +15,14 @@ namespace monograin {
 namespace {
 
 constexpr double k_series_noise = 1e-12;  // relative error of a response in series with a machine
+constexpr std::string_view k_displacement = ".displacement";
+constexpr std::string_view k_force = ".force";
+
+/// Whether the material has a surface energy: walls may then pull.
+bool is_adhesive(const CheckedScenario& scenario) {
+  const auto found = scenario.material.find("surface_energy");
+  return found != scenario.material.end() && found->second > 0.0;
+}
 
 }  // namespace
 
@@ -64,13 +74,26 @@ bool Response::run(const Machine& machine) {
     particle_ = path().x;
     return replay_.run(response_);
   }
-  std::vector<double> forces = path().x;
-  for (double& force : forces) force -= machine.force_offset;
-  if (machine.force_offset != 0.0 || is_moved_) replay_.follow(forces);
-  is_moved_ = machine.force_offset != 0.0;
+  std::vector<double> driving = path().x;
+  const bool moves_force = calibration_.x.observable.ends_with(k_force) && machine.force_offset != 0.0;
+  if (moves_force) {
+    const bool may_pull = is_adhesive(curve_.scenario);
+    for (double& force : driving) {
+      force -= machine.force_offset;
+      // Nothing pulls at a particle that does not adhere: with less force than without a load, it is not touched.
+      if (!may_pull) force = std::max(force, 0.0);
+    }
+  }
+  if (moves_force || is_moved_) replay_.follow(driving);
+  is_moved_ = moves_force;
   if (!replay_.run(response_)) return false;
-  particle_ = response_;
-  for (std::size_t i = 0; i < response_.size(); ++i) response_[i] += machine.addition(forces[i]);
+  const std::string& y = calibration_.y.observable;
+  if (y.ends_with(k_displacement)) {
+    particle_ = response_;
+    for (std::size_t i = 0; i < response_.size(); ++i) response_[i] += machine.addition(driving[i]);
+  } else if (y.ends_with(k_force)) {
+    for (double& force : response_) force += machine.force_offset;
+  }
   return true;
 }
 

@@ -32,7 +32,9 @@ class Response {
   bool operator()(std::span<const double> parameters, std::span<double> response);
 
   /// Displacements at the particle in the last run, if x or y is a displacement.
-  [[nodiscard]] std::vector<double> particle() const { return path().at_rows(particle_); }
+  [[nodiscard]] std::vector<double> particle() const {
+    return particle_.empty() ? std::vector<double>() : path().at_rows(particle_);
+  }
   [[nodiscard]] const Replay& replay() const noexcept { return replay_; }
   /// Reason why there was no response.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_.empty() ? replay_.problem() : problem_; }
@@ -47,7 +49,7 @@ class Response {
   Replay replay_;
   std::vector<double> measured_;  ///< y at the points of the path, about
   double noise_;                  ///< relative error of a response
-  std::vector<double> particle_;  ///< displacements at the points
+  std::vector<double> particle_;  ///< displacements at the points; empty if neither x nor y is a displacement
   std::vector<double> response_;  ///< at the points
   bool is_moved_ = false;         ///< the replay follows values other than x
   std::string problem_;
