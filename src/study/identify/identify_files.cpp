@@ -36,6 +36,7 @@ double relative_error(const ExperimentPlan& plan, const ExpectedErrors& errors, 
 
 /// A standard error over the value; if the value is zero, the standard error itself.
 std::string shown_error(const ExperimentPlan& plan, const ExpectedErrors& errors, std::size_t k) {
+  if (!errors.uncertainty.has_derivative[k]) return "no derivative: trial runs fail";
   if (!errors.uncertainty.is_determined[k]) return "not determined";
   const FreeParameter& parameter = plan.free[k];
   if (plan.values[k] == 0.0) {
