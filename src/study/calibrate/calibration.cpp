@@ -234,11 +234,7 @@ class Fit {
   /// The free parameters with their bounds: "'material.youngs_modulus' from 0.1 to 10 GPa".
   [[nodiscard]] std::string bounds_text() const {
     std::vector<std::string> texts;
-    for (const FreeParameter& parameter : calibration_.free) {
-      texts.push_back(fmt::format("'{}' from {:.6g} to {:.6g}{}{}", parameter.key.path,
-                                  parameter.lower / parameter.unit_factor, parameter.upper / parameter.unit_factor,
-                                  parameter.unit.empty() ? "" : " ", parameter.unit));
-    }
+    for (const FreeParameter& parameter : calibration_.free) texts.push_back(parameter.bounds_text());
     return fmt::format("{}", fmt::join(texts, ", "));
   }
 

@@ -34,6 +34,11 @@ struct FreeParameter : BoundedParameter {
   std::string unit;          ///< unit of its lower bound as given, in which it is shown; empty for a pure number
   double unit_factor = 1.0;  ///< one unit in SI
   std::optional<Prior> prior{};
+
+  /// True for a number of the testing machine, which is not in the scenario.
+  [[nodiscard]] bool is_of_machine() const noexcept;
+  /// "'material.youngs_modulus' from 0.1 to 10 GPa".
+  [[nodiscard]] std::string bounds_text() const;
 };
 
 /// Measured quantity in a column of the data.

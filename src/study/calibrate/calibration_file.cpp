@@ -563,10 +563,16 @@ Machine Calibration::machine_of(const MeasuredCurve& curve, std::span<const doub
   return machine;
 }
 
+bool FreeParameter::is_of_machine() const noexcept { return key.path.starts_with(k_data); }
+
+std::string FreeParameter::bounds_text() const {
+  return fmt::format("'{}' from {:.6g} to {:.6g}{}{}", key.path, lower / unit_factor, upper / unit_factor,
+                     unit.empty() ? "" : " ", unit);
+}
+
 bool Calibration::has_machine() const noexcept {
-  const auto is_of_machine = [](const FreeParameter& parameter) { return parameter.key.path.starts_with(k_data); };
   const auto has_own = [](const MeasuredCurve& curve) { return !curve.machine.adds_nothing(); };
-  return std::ranges::any_of(free, is_of_machine) || std::ranges::any_of(curves, has_own);
+  return std::ranges::any_of(free, &FreeParameter::is_of_machine) || std::ranges::any_of(curves, has_own);
 }
 
 const MeasuredCurve& Calibration::curve_of(std::size_t row) const noexcept {

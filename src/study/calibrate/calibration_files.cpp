@@ -234,7 +234,7 @@ std::string fitted_scenario_text(const Calibration& calibration, const Calibrati
     const double value = result.solution.parameters[k];
     std::string digits = fmt::format("{:.17g}", value);
     if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
-    if (!parameter.key.path.starts_with(calibration::k_data)) edits.push_back({parameter.key.path, digits});
+    if (!parameter.is_of_machine()) edits.push_back({parameter.key.path, digits});
     const double half = result.uncertainty.half_width(k) / parameter.unit_factor;
     head += fmt::format("#   {} = {}{}\n", parameter.key.path, with_unit(value / parameter.unit_factor, parameter.unit),
                         std::isfinite(half) ? fmt::format(" +- {}", with_unit(half, parameter.unit)) : "");
@@ -280,19 +280,19 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     table.header.emplace_back(calibration.free[k].key.path, fmt::format("{:.17g}", result.solution.parameters[k]));
   }
+  std::vector<double> force_offsets;  // of the curves
+  for (const MeasuredCurve& curve : calibration.curves) {
+    force_offsets.push_back(calibration.machine_of(curve, result.solution.parameters).force_offset);
+  }
   for (std::size_t row = 0; row < x.values.size(); ++row) {
+    const auto curve = static_cast<std::size_t>(&calibration.curve_of(row) - calibration.curves.data());
     const double fit = result.fit.y[row];
     const double band = result.fit.band[row];
     std::vector<double> cells{x.values[row], y.values[row],      fit, y.values[row] - fit, fit - band,
                               fit + band,    result.weights[row]};
     if (has_displacement) cells.push_back(result.particle[row] + (moves_x ? 0.0 : y.values[row] - fit));
-    if (has_force) {
-      const Machine machine = calibration.machine_of(calibration.curve_of(row), result.solution.parameters);
-      cells.push_back(moving.values[row] - machine.force_offset);
-    }
-    if (has_several) {
-      cells.push_back(static_cast<double>(&calibration.curve_of(row) - calibration.curves.data() + 1));
-    }
+    if (has_force) cells.push_back(moving.values[row] - force_offsets[curve]);
+    if (has_several) cells.push_back(static_cast<double>(curve + 1));
     table.append(cells);
   }
   return table;

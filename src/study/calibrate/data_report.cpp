@@ -235,7 +235,7 @@ DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
 }
 
 DataReport report_of_calibration(const fs::path& folder, DataChoice choice) {
-  const fs::path file = folder / "fit.csv";
+  const fs::path file = folder / k_calibration_tables[0];
   const std::vector<ColumnSummary> columns = report_of_file(file).columns;
   const auto has = [&columns](std::string_view name) {
     return std::ranges::any_of(columns, [name](const auto& column) { return name_in(column.heading) == name; });
@@ -279,7 +279,7 @@ std::vector<DataReport> reports_of(const Calibration& calibration) {
       report.remarks.push_back(fmt::format("data.compliance is {:g} m/N", machine.compliance));
     if (!machine.forces.empty()) report.remarks.push_back("data.compliance is a table");
     for (const FreeParameter& free : calibration.free) {
-      if (free.key.path.starts_with(calibration::k_data)) report.remarks.push_back(free.key.path + " is sought");
+      if (free.is_of_machine()) report.remarks.push_back(free.key.path + " is sought");
     }
     reports.push_back(std::move(report));
   }

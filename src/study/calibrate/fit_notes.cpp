@@ -109,9 +109,9 @@ void note_table_ends(const Calibration& calibration, const MeasuredCurve& curve,
 }
 
 /// Notes the holds of noisy x.
-void note_holds(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x,
+void note_holds(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<Turn>& turns,
                 Notes& notes) {
-  for (const Turn& turn : turns_of(x, turning_points(x))) {
+  for (const Turn& turn : turns) {
     if (turn.held_rows() == 0) continue;
     notes.push_back(fmt::format("hold of {} rows, lines {} to {}: {} is taken as constant there, {:.6g} {}, their mean",
                                 turn.held_rows(), calibration.lines[curve.begin + turn.held_begin],
@@ -121,7 +121,8 @@ void note_holds(const Calibration& calibration, const MeasuredCurve& curve, cons
 }
 
 /// Notes noise of x, and data that begin with unloading.
-void note_path(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x, Notes& notes) {
+void note_path(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x,
+               const std::vector<Turn>& turns, Notes& notes) {
   const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
   if (const double noise = noise_in(x); noise > 0.0) {
     notes.push_back(fmt::format(
@@ -129,7 +130,7 @@ void note_path(const Calibration& calibration, const MeasuredCurve& curve, const
         "beside them lead. Intervals do not contain the error of these points, and are too narrow where unloading is "
         "steep",
         calibration.x.observable, noise, calibration.x.si));
-    note_holds(calibration, curve, x, notes);
+    note_holds(calibration, curve, turns, notes);
   } else if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
     notes.push_back("the data begin with unloading; the particle is loaded to their first row from rest");
   }
@@ -137,13 +138,13 @@ void note_path(const Calibration& calibration, const MeasuredCurve& curve, const
 
 /// Notes the turn that the rows may have missed by most, if that changes y by more than its residuals.
 void note_missed_turns(const Calibration& calibration, const CalibrationResult& result, const MeasuredCurve& curve,
-                       const std::vector<double>& x, Notes& notes) {
+                       const std::vector<double>& x, const std::vector<Turn>& turns, Notes& notes) {
   if (result.uncertainty.degrees_of_freedom == 0) return;
   const double deviation =
       std::sqrt(result.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom));
   double largest = k_far_turn * deviation;
   std::string note;
-  for (const Turn& turn : turns_of(x, turning_points(x))) {
+  for (const Turn& turn : turns) {
     const std::size_t k = turn.last_row;
     const std::size_t row = curve.begin + k;
     if (turn.is_known || k == 0 || k + 2 >= x.size()) continue;
@@ -237,8 +238,9 @@ std::vector<std::string> notes_of(const Calibration& calibration, const Calibrat
   for (const MeasuredCurve& curve : calibration.curves) {
     const std::vector<double> x = x_of(calibration, curve);
     note_table_ends(calibration, curve, x, notes);
-    note_path(calibration, curve, x, notes);
-    note_missed_turns(calibration, result, curve, x, notes);
+    const std::vector<Turn> turns = turns_of(x, turning_points(x));
+    note_path(calibration, curve, x, turns, notes);
+    note_missed_turns(calibration, result, curve, x, turns, notes);
   }
   note_correlations(calibration, result, notes);
   note_residual_tests(calibration, result, notes);

@@ -32,9 +32,7 @@ const CurveProcedure* procedure_of(const Calibration& calibration) {
 bool is_force_curve(const Calibration& calibration) {
   return calibration.curves.size() == 1 && calibration.curves.front().control == Step::Kind::displacement &&
          calibration.y.observable.ends_with(".force") && class_of(calibration.x) == class_of(calibration.y) &&
-         !is_free(calibration, k_radius_key) &&
-         std::ranges::none_of(calibration.free,
-                              [](const auto& free) { return free.key.path.starts_with(calibration::k_data); }) &&
+         !is_free(calibration, k_radius_key) && std::ranges::none_of(calibration.free, &FreeParameter::is_of_machine) &&
          std::ranges::none_of(procedure_of(calibration)->fixed_keys,
                               [&](std::string_view key) { return is_free(calibration, key); });
 }

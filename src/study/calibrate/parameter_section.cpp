@@ -97,7 +97,7 @@ struct RefusedNumber {
 std::optional<RefusedNumber> refused(Reading& reading, const Section& free, const ScenarioText& scenario,
                                      const FreeParameter& parameter) {
   const std::string& path = parameter.key.path;
-  if (path.starts_with(k_data)) return {};  // a number of the machine is not in the scenario
+  if (parameter.is_of_machine()) return {};
   std::optional<std::string> problem;
   try {
     for (const double value :
@@ -124,7 +124,7 @@ void report_refused(Reading& reading, const Section& free, const ScenarioText& s
     Values values;
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const FreeParameter& parameter = parameters[k];
-      if (parameter.key.path.starts_with(k_data)) continue;
+      if (parameter.is_of_machine()) continue;
       const double bound = ((corner >> k) & 1U) != 0 ? parameter.upper : parameter.lower;
       values.emplace_back(parameter.key.path, corner >> parameters.size() != 0 ? middle_of(parameter) : bound);
     }
@@ -132,11 +132,8 @@ void report_refused(Reading& reading, const Section& free, const ScenarioText& s
   }
   for (const RefusedNumber& number : refused_numbers) {
     const FreeParameter& parameter = number.parameter;
-    const std::string& path = parameter.key.path;
-    reading.faults.add(free.key_place(path),
-                       fmt::format("the scenario does not take '{}' from {:.6g} to {:.6g}{}{}: {}", path,
-                                   parameter.lower / parameter.unit_factor, parameter.upper / parameter.unit_factor,
-                                   parameter.unit.empty() ? "" : " ", parameter.unit, number.problem));
+    reading.faults.add(free.key_place(parameter.key.path),
+                       fmt::format("the scenario does not take {}: {}", parameter.bounds_text(), number.problem));
   }
 }
 

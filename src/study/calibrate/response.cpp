@@ -57,7 +57,7 @@ bool Response::operator()(std::span<const double> parameters, std::span<double> 
   for (const bool is_radius : {true, false}) {  // the radius comes first: lengths in R0 follow it
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const std::string& path = calibration_.free[k].key.path;
-      if (path.starts_with(calibration::k_data) || (path == k_radius_key) != is_radius) continue;
+      if (calibration_.free[k].is_of_machine() || (path == k_radius_key) != is_radius) continue;
       if (!replay_.set(path, parameters[k])) return false;
     }
   }

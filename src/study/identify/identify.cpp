@@ -397,7 +397,7 @@ ExpectedErrors expected_errors(const std::vector<FreeParameter>& free, std::span
   expected.log_determinant = expected.relative_variances = k_infinity;
   std::vector<Eigen::Index> own;  // indices of the scenario's parameters
   for (std::size_t k = 0; k < free.size(); ++k) {
-    if (free[k].key.path.starts_with(calibration::k_data)) continue;
+    if (free[k].is_of_machine()) continue;
     if (!expected.uncertainty.is_determined[k]) return expected;
     own.push_back(static_cast<Eigen::Index>(k));
   }

@@ -156,7 +156,6 @@ class PlanReader {
     for (const FreeParameter& parameter : made_.free) {
       const std::string& path = parameter.key.path;
       const SourceLocation place = place_of(free.table->find(path)->first.source(), free.place);
-      const bool is_of_machine = path.starts_with(calibration::k_data);
       if (path == calibration::k_compliance && !made_.machine.forces.empty()) {
         faults_.add(place,
                     fmt::format("'{}' is free, and [data] has a table of deflections; expected one of them", path));
@@ -167,14 +166,14 @@ class PlanReader {
         if (value >= parameter.lower && value <= parameter.upper) continue;
         faults_.add(place, fmt::format("'{}' is {:.6g}{}{} in {}, which is not between the bounds", path,
                                        value / parameter.unit_factor, parameter.unit.empty() ? "" : " ", parameter.unit,
-                                       is_of_machine ? "[data]" : "the scenario"));
+                                       parameter.is_of_machine() ? "[data]" : "the scenario"));
       } catch (const ScenarioError& error) {
         faults_.add(place, on_one_line(error.faults().front().message));
       }
     }
     faults_.throw_if_any();
     for (std::size_t k = 0; k < made_.free.size(); ++k) {
-      if (made_.free[k].key.path.starts_with(calibration::k_data)) continue;
+      if (made_.free[k].is_of_machine()) continue;
       paths_.push_back(made_.free[k].key.path);
       values_.push_back(made_.values[k]);
     }
@@ -329,9 +328,7 @@ class PlanReader {
 }  // namespace
 
 bool ExperimentPlan::has_machine() const noexcept {
-  return !machine.adds_nothing() || std::ranges::any_of(free, [](const FreeParameter& parameter) {
-    return parameter.key.path.starts_with(calibration::k_data);
-  });
+  return !machine.adds_nothing() || std::ranges::any_of(free, &FreeParameter::is_of_machine);
 }
 
 ExperimentPlan read_experiment_plan(const fs::path& file) {
