@@ -21,13 +21,16 @@ struct Run;
                                                                    const std::function<Scene()>& new_scene);
 
 /// Adds a column d(X)/d(KEY) to history and events for every column X of numbers and every key of the scenario's table
-/// [sensitivities], by central differences of two more runs for each key. The run gets an estimate of their error.
+/// [sensitivities]. The run gets an estimate of their error. The derivatives are central differences of two more runs
+/// for each key, which solve for their states directly if that is possible. Rows with too large a truncation, as next
+/// to a square root, get them from two more runs with a smaller step, which write only these rows. If no direct
+/// solution exists, CVODES integrates the derivatives with another run.
 ///
 /// Output rows are compared at their instant, in the same segment of all runs. Rows at events and ends of steps, and
 /// the events themselves, are compared with the same event or end in the other runs: d(time)/d(KEY) is not zero there,
 /// and the derivative at fixed time is d(X)/d(KEY) - dX/dt d(time)/d(KEY), with the slope on the side of the row.
 /// Derivatives are NaN after the first event that differs between the runs, and in output rows that lie before an event
-/// in one run and after it in another.
+/// in one run and after it in another, and in rows at an event where the column holds nothing but round-off.
 /// @param why       reason for which the derivatives are not integrated with the run
 /// @param scene_of  makes the scene of a scenario with another value of a key
 void add_sensitivities(Run& run, const std::string& why, const std::function<Scene(const CheckedScenario&)>& scene_of);
