@@ -97,7 +97,7 @@ void draw_figure(const fs::path& folder) {
 void report(const Run& run, const fs::path& folder) {
   for (const Sensitivity& by : run.sensitivities) {
     say("derivatives by {}: {}, error {:.1g} of the largest\n", by.key,
-        by.is_forward ? "integrated with the run" : "differences of more runs", by.error);
+        by.is_forward ? "integrated" : "differences of more runs", by.error);
   }
   say("{}: {}, {} rows, {} events -> {}\n", run.scenario.name, to_string(run.record.status),
       run.record.history.row_count(), run.record.events.row_count(), folder.string());

@@ -73,7 +73,7 @@ struct Sensitivity {
   double value = 0.0;       ///< value of the key [SI]
   double step = 0.0;        ///< distance of the two neighbouring values from `value` [SI]
   double error = 0.0;       ///< estimated error over the largest derivative of the column; NaN: no derivatives
-  bool is_forward = false;  ///< true: integrated with the run; false: differences of two more runs
+  bool is_forward = false;  ///< true: integrated with a run; false: differences of more runs
   std::string why;          ///< reason for the method
 };
 
