@@ -260,7 +260,7 @@ void System::leave_idle_walls(double xi, std::span<double> y, std::size_t first,
 contacts::VisibleContact System::visible(std::size_t i, double xi) const {
   const ClassState& c = particle_.classes[i];
   const double d = c.position(xi);
-  // What the weak spring of the centre leaves in an open contact is no load.
+  // The weak spring of the centre leaves a small force in an open contact, which is no load.
   const double load = c.touches ? c.contact.F : 0.0;
   const double radius = c.touches ? std::sqrt(c.contact.area) : 0.0;
   const double area = std::numbers::pi * radius * radius;

@@ -74,7 +74,7 @@ constexpr std::array<string_view, 8> k_domain{
     "one up to 0.3 R0 and worse beyond (force -15 against -3 % at 0.45 R0)",
     "the closed contact radius is off from its integral by a quarter of the correction at a = R0/2 and 90 degrees",
     "a force-controlled wall, also at zero force, follows the surface and closes a gap at once",
-    "a free centre that only touching walls keep from moving has no determined position, and their contacts no "
+    "a free centre that only idle contacts keep from moving has no determined position, and their contacts no "
     "determined regime",
 };
 

@@ -141,7 +141,7 @@ double yield_overlap_ratio(double modulus_over_yield, const PressureCurve& press
   for (const double knot : pressure_curve.knots().subspan(1)) {
     const double upper = std::sqrt(std::min(knot, 1.0));
     if (excess(upper) > 0.0) {
-      // The pressure of a piece lies between those at its ends, which brackets the root closely where it is small.
+      // The pressure of a piece lies between those at its ends. The least and the greatest of them bracket the root.
       const auto [least, greatest] =
           std::minmax({pressure_curve.at(lower * lower).value, pressure_curve.at(std::min(upper * upper, knot)).value});
       return square_of_root(excess, std::max(lower, least * unit), std::min(upper, greatest * unit));

@@ -256,8 +256,8 @@ double retreat_guard(Particle& p, std::size_t i, double xi, std::span<const doub
 
 double lost_guard(const Particle& p, std::size_t i, double xi) {
   const double guard = contact_guard(p, k_lost, i, xi, p.contact(i).overlap);
-  // An idle contact is always near to being lost. In units of the resolution, its guard is not near zero, so that it is
-  // not lost together with others.
+  // An idle contact has an overlap of almost zero, so its guard is near zero all the time, and the contact would be
+  // lost together with any other one. Division by the resolution makes the guard's value large.
   return p.branch(i).is_on_primary_branch || is_idle(p, i) ? guard / k_resolution : guard;
 }
 

@@ -20,8 +20,8 @@ namespace {
 // A reload guard that fires together with another event counts if no more than this share of the unloading branch is
 // left to its end.
 constexpr double k_passed = 1e-2;
-// Such a share under force control: the wall would go back by the missing force over the stiffness of a plastic
-// contact, which is smaller than the stiffness of the unloading branch by many orders.
+// The same share for a wall under force control. It is smaller, because the wall would go back by the missing force
+// over the stiffness of a plastic contact, which is many orders below that of the unloading branch.
 constexpr double k_passed_by_force = 1e-6;
 // Change of an overlap at one instant (over R0) beyond which the free centre has jumped to another equilibrium.
 constexpr double k_jumped = 1e-9;
@@ -222,7 +222,8 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       has_turned_[i] = true;
       return true;
     case k_peel:
-      // Next to stiff contacts the rate of a contact that turns with them loses digits; this one is no motion.
+      // A contact that moves together with much stiffer ones has a rate of few digits. A rate below k_at_rest is
+      // round-off, not a motion.
       if (edge_rate(p_, i, now) >= -k_at_rest || std::abs(overlap_rate(p_, i, now)) <= k_at_rest) {
         // An edge that has just turned sticks at the verge of peeling and leaves it with the square of its
         // displacement. Round-off has fired the guard and would fire it again; setting the edge back prevents that.
@@ -314,7 +315,7 @@ void ModeSearch::resolve(double xi, std::span<double> y, std::vector<Event>& log
   accept(xi, y);
 }
 
-/// Corrects the mode where it disagrees with the motion that it leads to.
+/// Corrects the mode where the rates contradict it: a contact that unloads in it, for example, but is pressed further.
 /// @return false if the mode is consistent
 bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log) {
   p_.mode.is_growing = growth_ ? *growth_ : wants_growth(xi, y);

@@ -14,8 +14,8 @@ std::string_view advice(Difficulty difficulty) noexcept {
       return "the program hardly determines the plastic strain, which shows round-off; expected integrator "
              "= \"cvode-bdf\"";
     case Difficulty::singular_balance:
-      return "the balance of the free centre is singular, because nothing but contacts that only touch keeps it from "
-             "moving; expected integrator = \"direct\" or \"auto\"";
+      return "the balance of the free centre is singular, because nothing but idle contacts keeps it from moving; "
+             "expected integrator = \"auto\"";
     case Difficulty::near_applicability_limit:
       return "the limit of applicability is so near that the stiffness magnifies the errors that are tolerated; "
              "expected a larger rtol, or integrator = \"direct\"";

@@ -35,7 +35,7 @@ constexpr const char* k_comparison = "laws-fe";
 constexpr std::array<std::pair<std::string_view, std::string_view>, 3> k_fe_tables{
     {{"simple", "By strain: two walls"}, {"die", "By strain: die"}, {"hydrostatic", "By strain: six walls at once"}}};
 
-/// What a law makes of the scene.
+/// Outcome of a scene under one law.
 struct Trial {
   std::string outcome;  ///< "runs", "stops", "fails" or "cannot"
   std::string remark;   ///< why it does not run to the end; or its first warning

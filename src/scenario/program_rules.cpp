@@ -68,7 +68,7 @@ std::vector<double> durations_of(const WallProgram& program, const std::vector<b
   return durations;
 }
 
-/// What a step does, where another one withdraws its wall.
+/// Describes a step beside one that withdraws its wall: "is held".
 std::string pace_of(const Step& step, double duration) {
   if (step.kind == Step::Kind::detach) return "is withdrawn until its contact is lost (detach)";
   const std::string_view verb = step.kind == Step::Kind::hold ? "is held" : "moves";
