@@ -118,6 +118,11 @@ std::string unknown_unit(std::string_view symbol, const DimensionInfo& info) {
   if (symbol.empty()) return with_expectation("the unit is missing", info);
   if (symbol == info.relative) return with_expectation("the initial radius cannot be given in itself", info);
   if (symbol.starts_with(',')) return with_expectation("a decimal comma", info) + ", with a decimal point";
+  const auto has_unit = [&](const DimensionInfo& other) { return is_unit_of(symbol, other.dimension); };
+  if (const auto other = std::ranges::find_if(k_dimensions, has_unit); other != k_dimensions.end()) {
+    const std::string_view noun = other->noun.substr(other->noun.find(' ') + 1);
+    return with_expectation(fmt::format("'{}' is a unit of {}", shown(symbol), noun), info);
+  }
   const auto lower = [](unsigned char c) { return std::tolower(c); };
   const auto other_case = std::ranges::find_if(
       info.units, [&](const Unit& unit) { return std::ranges::equal(unit.symbol, symbol, {}, lower, lower); });

@@ -159,7 +159,7 @@ TEST(Table, SaysWhichColumnsItHas) {
   EXPECT_EQ(faults(with_displacement(k_table), "t[s],x [N]\n0,0\n1,1\n"),
             Lines{"die.toml:12:63: value = \"x[mm]\": path.csv has no such column; expected one of t[s], x [N]"});
   EXPECT_EQ(faults(with_displacement("{ table = \"path.csv\", time = \"t\", value = \"x\" }"), "t[s],x[N]\n0,0\n1,1\n"),
-            Lines{"path.csv:1:6: column 'x[N]': unknown unit 'N'; expected a length, for example \"10 mm\""});
+            Lines{"path.csv:1:6: column 'x[N]': 'N' is a unit of force; expected a length, for example \"10 mm\""});
 }
 
 TEST(Table, SaysWhereAMissingFileIsNamed) {
@@ -244,10 +244,11 @@ TEST(Sine, BeginsAtItsMean) {
 }
 
 TEST(Sine, SaysWhatIsWrongWithItsKeys) {
-  EXPECT_EQ(faults(with_displacement("{ sine = { mean = 0, amplitude = 0, frequency = \"2 s\", cycles = 0.5 } }"), ""),
-            (Lines{"die.toml:12:51: amplitude = 0: out of range; expected a length from 1e-12 m to 1e+06 m",
-                   "die.toml:12:66: frequency = \"2 s\": unknown unit 's'; expected a frequency, for example \"2 Hz\"",
-                   "die.toml:12:82: cycles = 0.5: expected a whole number from 1 to 100000"}));
+  EXPECT_EQ(
+      faults(with_displacement("{ sine = { mean = 0, amplitude = 0, frequency = \"2 s\", cycles = 0.5 } }"), ""),
+      (Lines{"die.toml:12:51: amplitude = 0: out of range; expected a length from 1e-12 m to 1e+06 m",
+             "die.toml:12:66: frequency = \"2 s\": 's' is a unit of time; expected a frequency, for example \"2 Hz\"",
+             "die.toml:12:82: cycles = 0.5: expected a whole number from 1 to 100000"}));
   EXPECT_EQ(faults(with_displacement("{ sine = { mean = 0, amplitude = 1, frequency = 1, cycles = 2000 } }"), ""),
             Lines{"die.toml:12:78: cycles = 2000: expected at most 1562, 64 ramps each"});
   EXPECT_EQ(

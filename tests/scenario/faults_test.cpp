@@ -214,13 +214,14 @@ const std::vector<FaultRow> k_rows{
              12,
              "dispalcement = \"0.1 R0\"\nuntil = { force = \"1 m\" }",
              {"die.toml:12:1: unknown key 'dispalcement' in [[loading.steps]]; did you mean 'displacement'?",
-              "die.toml:13:19: force = \"1 m\": unknown unit 'm'; expected a force, for example \"10 N\""}},
-    FaultRow{"NothingToDoBesideAWrongUnit",
-             12,
-             "until = { displacement = \"1 N\" }",
-             {"die.toml:11:1: the step has nothing to do; expected exactly one of displacement, force, hold, detach, "
-              "cycle",
-              "die.toml:12:26: displacement = \"1 N\": unknown unit 'N'; expected a length, for example \"10 mm\""}},
+              "die.toml:13:19: force = \"1 m\": 'm' is a unit of length; expected a force, for example \"10 N\""}},
+    FaultRow{
+        "NothingToDoBesideAWrongUnit",
+        12,
+        "until = { displacement = \"1 N\" }",
+        {"die.toml:11:1: the step has nothing to do; expected exactly one of displacement, force, hold, detach, "
+         "cycle",
+         "die.toml:12:26: displacement = \"1 N\": 'N' is a unit of force; expected a length, for example \"10 mm\""}},
     FaultRow{"TwoFormsInOneStep",
              12,
              "displacement = \"0.1 R0\"\nhold = true",
@@ -250,7 +251,8 @@ const std::vector<FaultRow> k_rows{
     FaultRow{"RateInWrongUnit",
              13,
              "rate = \"1 N/s\"",
-             {"die.toml:13:8: rate = \"1 N/s\": unknown unit 'N/s'; expected a velocity, for example \"1 mm/s\""}},
+             {"die.toml:13:8: rate = \"1 N/s\": 'N/s' is a unit of force rate; expected a velocity, for example \"1 "
+              "mm/s\""}},
     FaultRow{"UntilIsEmpty",
              13,
              "duration = 1\nuntil = {}",

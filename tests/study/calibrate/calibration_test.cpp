@@ -1095,7 +1095,7 @@ constexpr FaultCase k_faults[] = {
      "c.toml:7:54: to = \"10 GPa\" is not above from = \"300 GPa\""},
     {"BoundMissing", "c.toml", ", to = \"300 GPa\"", "",
      "c.toml:7:29: key 'to' is missing in \"material.youngs_modulus\"; expected for example to = \"50 MPa\""},
-    {"BoundInWrongUnit", "c.toml", "10 GPa", "10 mm", "c.toml:7:38: from = \"10 mm\": unknown unit 'mm'"},
+    {"BoundInWrongUnit", "c.toml", "10 GPa", "10 mm", "c.toml:7:38: from = \"10 mm\": 'mm' is a unit of length"},
     {"BoundOutOfRange", "c.toml", "10 GPa", "-10 GPa", "c.toml:7:38: from = \"-10 GPa\": out of range"},
     {"StartOutside", "c.toml", "to = \"300 GPa\"", "to = \"300 GPa\", start = \"1 GPa\"",
      "c.toml:7:72: start = \"1 GPa\" is not between the bounds"},
