@@ -38,6 +38,7 @@ constexpr const char* k_journal_extension = ".journal";
 constexpr std::string_view k_program_line = "# program: monograin ";
 constexpr std::size_t k_part = std::size_t{1} << 20U;  // bytes of the results that are written at once
 constexpr const char* k_digest_line = "# sweep_digest: ";
+constexpr const char* k_refused = "refused";  // status of a run whose scenario has faults
 /// Tables that are made from the results, each with a figure of the same name.
 constexpr std::array k_made_from_results{k_bands_file, k_sensitivities_file};
 
@@ -151,7 +152,7 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
     const CheckedScenario scenario = scenario_of(sweep, index);
     record = histories.empty() ? record_run(scenario, left_out) : run_scenario(scenario).record;
   } catch (const ScenarioError& error) {
-    outcome.row.status = "refused";
+    outcome.row.status = k_refused;
     outcome.row.reason = plain(messages_of(error));
   } catch (const std::exception& error) {  // a bug of the program costs this run, not the sweep
     outcome.row.status = to_string(RunStatus::failed);
@@ -163,6 +164,77 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
   summarise(record->history, sweep.columns, layout, outcome);
   if (!histories.empty()) keep_history(record->history, histories / fmt::format("{}.csv", index + 1));
   return outcome;
+}
+
+// --- the results
+
+/// Cells of a line.
+[[nodiscard]] std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> cells;
+  for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    cells.push_back(text.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  return cells;
+}
+
+/// Headings of the cells that precede those of a run's results.
+[[nodiscard]] std::string leading_headings(const Sweep& sweep) {
+  std::string headings = "run";
+  for (const SweepFactor& factor : sweep.factors) headings += ',' + factor.heading();
+  return headings + ",status,reason";
+}
+
+/// The number of a run and its values, each with a comma after it.
+[[nodiscard]] std::string leading_cells(const Sweep& sweep, std::size_t run) {
+  std::string cells = fmt::format("{},", run + 1);
+  for (const SweepValue& value : sweep.runs[run]) cells += cell_of(value) + ',';
+  return cells;
+}
+
+[[nodiscard]] bool is_status(std::string_view word) {
+  return word == k_refused ||
+         std::ranges::any_of(std::array{RunStatus::complete, RunStatus::stopped, RunStatus::failed},
+                             [word](RunStatus status) { return word == to_string(status); });
+}
+
+[[nodiscard]] bool is_number(std::string_view cell) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc{} && end == cell.data() + cell.size();
+}
+
+/// True if a line is the complete row of a run.
+/// @param headings  of the results: a heading with a unit is that of numbers
+[[nodiscard]] bool is_row(std::string_view line, const Sweep& sweep, std::size_t run,
+                          const std::vector<std::string_view>& headings) {
+  const std::string begin = leading_cells(sweep, run);
+  if (!line.starts_with(begin)) return false;
+  const std::vector<std::string_view> cells = split(line.substr(begin.size()));
+  if (cells.size() != headings.size() + 2 || !is_status(cells.front())) return false;
+  for (std::size_t k = 0; k < headings.size(); ++k) {
+    if (headings[k].ends_with(']') && !is_number(cells[k + 2])) return false;
+  }
+  return true;
+}
+
+/// True if a folder has results of this sweep with a complete row for each run. An edited or truncated file is none.
+[[nodiscard]] bool has_results(const Sweep& sweep, const fs::path& folder) {
+  std::ifstream in(folder / k_results);
+  std::string line;
+  const auto next = [&] { return std::getline(in, line) && !in.eof(); };  // the last line ends with a line break
+  bool is_own = false;
+  bool has_line = next();
+  for (; has_line && line.starts_with('#'); has_line = next()) is_own |= line == k_digest_line + sweep.digest;
+  const std::string expected = leading_headings(sweep);
+  if (!is_own || !has_line || !line.starts_with(expected)) return false;
+  const std::string rest = line.substr(std::min(expected.size() + 1, line.size()));
+  const std::vector<std::string_view> headings = split(rest);
+  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
+    if (!next() || !is_row(line, sweep, run, headings)) return false;
+  }
+  return !std::getline(in, line);
 }
 
 // --- the folder
@@ -180,14 +252,6 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
   }
   std::ranges::sort(files);
   return files;
-}
-
-[[nodiscard]] bool has_results(const Sweep& sweep, const fs::path& folder) {
-  std::ifstream in(folder / k_results);
-  for (std::string line; std::getline(in, line) && line.starts_with('#');) {
-    if (line == k_digest_line + sweep.digest) return true;
-  }
-  return false;
 }
 
 void prepare(const fs::path& folder) {
@@ -267,10 +331,9 @@ class Rows {
   /// Writes the results. All runs have to be finished.
   void write(const TextSink& sink) {
     const std::vector<std::string> columns = all_columns();
-    sink(fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\nrun", k_program_line, version(),
-                     sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name));
-    for (const SweepFactor& factor : sweep_.factors) sink(',' + factor.heading());
-    sink(fmt::format(",status,reason{}{}\n", columns.empty() ? "" : ",", fmt::join(columns, ",")));
+    sink(fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n{}{}{}\n", k_program_line, version(),
+                     sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name,
+                     leading_headings(sweep_), columns.empty() ? "" : ",", fmt::join(columns, ",")));
     std::unordered_map<std::string, std::vector<std::size_t>> targets;  // columns of each layout's cells
     std::vector<std::string_view> cells;
     std::string text;
@@ -286,9 +349,7 @@ class Rows {
       cells.assign(columns.size(), "nan");
       const std::vector<std::string_view> own = split(row.cells);
       for (std::size_t k = 0; k < own.size(); ++k) cells[target->second[k]] = own[k];
-      text += fmt::format("{}", run + 1);
-      for (const SweepValue& value : sweep_.runs[run]) text += ',' + cell_of(value);
-      text += fmt::format(",{},{}", row.status, row.reason);
+      text += fmt::format("{}{},{}", leading_cells(sweep_, run), row.status, row.reason);
       for (const std::string_view cell : cells) (text += ',') += cell;
       text += '\n';
       if (text.size() < k_part && run + 1 < places_.size()) continue;
@@ -307,16 +368,6 @@ class Rows {
   [[nodiscard]] SweepRow row_of(std::size_t run) { return records_[places_[run].record].row(places_[run].begin); }
   [[nodiscard]] const std::string& layout_of(std::size_t run, const SweepRow& row) const {
     return records_[places_[run].record].layouts().at(row.layout);
-  }
-
-  [[nodiscard]] static std::vector<std::string_view> split(std::string_view text) {
-    std::vector<std::string_view> cells;
-    while (!text.empty()) {
-      const std::size_t comma = std::min(text.find(','), text.size());
-      cells.push_back(text.substr(0, comma));
-      text.remove_prefix(std::min(comma + 1, text.size()));
-    }
-    return cells;
   }
 
   /// Columns of all runs in the order of the runs, final values before extremes.

@@ -621,6 +621,35 @@ TEST_F(StoppedSweep, RepeatsARowThatWasDamaged) {
   EXPECT_EQ(results(sweep_, "cut"), whole_);
 }
 
+TEST_F(StoppedSweep, WritesResultsAnewThatLackAnythingOfARun) {
+  const auto edited = [&](std::string_view old, std::string_view text) {
+    const std::size_t at = whole_.rfind(old);
+    EXPECT_NE(at, std::string::npos) << old;
+    return at == std::string::npos ? whole_ : std::string(whole_).replace(at, old.size(), text);
+  };
+  const std::size_t third = whole_.find("\n3,") + 1;
+  const std::string row = whole_.substr(third, whole_.find('\n', third) + 1 - third);
+  const std::size_t number = row.find(",complete,,") + 11;
+  const std::string words = std::string(row).replace(number, row.find(',', number) - number, "unknown");
+  for (const std::string& text :
+       {edited(row, ""), edited(row, row + row), edited(row, words), edited(",complete,", ",done,"),
+        whole_.substr(0, third), whole_.substr(0, whole_.size() - 1), whole_.substr(0, whole_.size() - 5),
+        whole_ + "16\n"}) {
+    fs::remove_all(path("edited"));
+    fs::create_directory(path("edited"));
+    write("edited/results.csv", text);
+    EXPECT_EQ(results(sweep_, "edited"), whole_);
+  }
+  write("edited/results.csv", whole_);
+  const auto now = [&] {
+    return run_sweep(sweep_, {.folder = path("edited"), .threads = 1, .shard = {}, .progress = {}}).runs_now;
+  };
+  EXPECT_EQ(now(), 0U) << "nothing is missing";
+  write("edited/results.csv", edited(row, ""));
+  write("edited/sweep.journal", journal_);
+  EXPECT_EQ(now(), 7U) << "the journal has the other eight";
+}
+
 TEST_F(StoppedSweep, ChangedScenariosAndTablesChangeTheDigest) {
   const std::string digest = sweep_.digest;
   write("small.toml", std::string(k_scenario) + "# changed\n");
