@@ -12,6 +12,7 @@
 #include "catalogue.hpp"
 #include "engine/drive.hpp"
 #include "history/branches.hpp"
+#include "history/run.hpp"
 #include "scenario/numbers.hpp"
 #include "system/resolution.hpp"
 
@@ -203,6 +204,7 @@ const Measurable::Column* Measurable::find(std::string_view name) const noexcept
 }
 
 Measurable measurable_in(const CheckedScenario& scenario) {
+  check_integrator(scenario);
   const Scene scene = make_scene(scenario);
   Measurable measurable;
   for (std::size_t c = 0; c < scene.classes.size(); ++c) {

@@ -71,7 +71,7 @@ struct Measurable {
   [[nodiscard]] std::string prefix() const { return driven.empty() ? std::string() : driven.front() + '.'; }
 };
 
-/// @throws ScenarioError if the programs of the walls are incompatible
+/// @throws ScenarioError if the programs of the walls are incompatible, or the integrator does not suit the scene
 [[nodiscard]] Measurable measurable_in(const CheckedScenario& scenario);
 
 /// Columns that drive a scenario and that are observed. Columns are observables: "axial.force".

@@ -1271,6 +1271,18 @@ TEST_F(CalibrationTest, FitsSeveralCurvesTogetherEachWithItsOverrides) {
   EXPECT_EQ(json.at("data")[1].at("set")[0], "material.poisson_ratio=0.4");
 }
 
+TEST_F(CalibrationTest, RefusesADirectSolutionThatTheSceneDoesNotHave) {
+  const std::string message = "integrator = \"direct\": the state of this scene depends on the path to it";
+  const std::string coupled = replaced(k_mdr, "\"mdr\"", "\"cel\"");
+  write("s.toml", coupled + "[numerics]\nintegrator = \"direct\"\n");
+  ASSERT_EQ(faults().size(), 1U);
+  EXPECT_TRUE(faults()[0].starts_with("s.toml:14:14: " + message)) << faults()[0];
+  write("s.toml", coupled);
+  write("c.toml", replaced(k_calibration, "[free]", "set = [\"numerics.integrator=direct\"]\n[free]"));
+  ASSERT_EQ(faults().size(), 1U);
+  EXPECT_TRUE(faults()[0].starts_with("c.toml:6:7: " + message)) << faults()[0];
+}
+
 TEST_F(CalibrationTest, ReportsTheFaultsOfEveryCurve) {
   write("e.csv", k_data);
   write("c.toml", replaced(k_two_curves, "poisson_ratio=0.4", "poisson_ratio=0.7"));
