@@ -478,12 +478,19 @@ std::vector<fs::path> redraw_bench(const fs::path& csv, const fs::path& folder) 
     }
     return *found;
   };
+  const auto numbers = [&](std::string_view name) {
+    const auto found = table.find(name);
+    if (!found || table.columns()[*found].holds_words()) {
+      throw std::runtime_error(fmt::format("{}: has no numbers in a column '{}'", csv.string(), name));
+    }
+    return table.column(name);
+  };
   const std::size_t scene = words("scene");
   const std::size_t integrator = words("integrator");
-  const auto rtol = table.column("rtol");
-  const auto curve_error = table.column("curve_error");
-  const auto event_error = table.column("event_error");
-  const auto fastest = table.column("fastest");
+  const auto rtol = numbers("rtol");
+  const auto curve_error = numbers("curve_error");
+  const auto event_error = numbers("event_error");
+  const auto fastest = numbers("fastest");
   std::vector<BenchScene> scenes;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const std::string name(table.word(row, scene));

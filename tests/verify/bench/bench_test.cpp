@@ -11,6 +11,7 @@
 #include "history/run.hpp"
 #include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
+#include "support/refusal.hpp"
 #include "support/svg_figure.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
@@ -343,6 +344,17 @@ TEST(BenchFiles, AreNotDrawnFromAFileOfSomethingElse) {
   const TemporaryFolder folder;
   write_text(folder.path() / "other.csv", "scene,rtol\n1,2\n");
   EXPECT_THROW(redraw_bench(folder.path() / "other.csv", folder.path()), std::runtime_error);
+}
+
+TEST(BenchFiles, AreNotDrawnFromAFileWithoutOneOfTheColumns) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "bench.csv";
+  const std::string heading = "scene,integrator,rtol,curve_error,event_error,fastest[s]\n";
+  for (const std::string name : {"rtol", "curve_error", "event_error", "fastest"}) {
+    write_text(file, std::string(heading).replace(heading.find(name), name.size(), "other") + "a,ida,1,1,1,1\n");
+    const std::string message = refusal<std::runtime_error>([&] { return redraw_bench(file, folder.path()); });
+    EXPECT_TRUE(message.ends_with("bench.csv: has no numbers in a column '" + name + "'")) << message;
+  }
 }
 
 TEST(BenchFiles, CompareBdfWithAutoAtTheErrorThatAutoHasByDefault) {
