@@ -25,6 +25,8 @@ BUILD = "build/python"
 NAME = "monograin"
 # Ready scenarios, with what they name and what sweeps, calibrates and plans them.
 DATA = ("*.toml", "*.csv", "sweeps/*", "calibrate/*", "design/*")
+# Files of licences in a wheel, and where they come from. The second one has those of the libraries compiled in.
+LICENCES = {"LICENSE": "LICENSE", "THIRD_PARTY_NOTICES": "cmake/copyright"}
 # Folders that a source distribution does without.
 NO_SOURCE = ("build", "runs", "dist")
 
@@ -128,6 +130,10 @@ def metadata() -> str:
         f"Name: {about['name']}",
         f"Version: {version()}",
         f"Summary: {about['description']}",
+        f"Keywords: {','.join(about['keywords'])}",
+        f"License: {about['license']['text']}",
+        *(f"License-File: {name}" for name in LICENCES),
+        *(f"Classifier: {classifier}" for classifier in about["classifiers"]),
         f"Requires-Python: {about['requires-python']}",
         "Description-Content-Type: text/markdown",
         *(f"Requires-Dist: {requirement}" for requirement in about["dependencies"]),
@@ -145,7 +151,7 @@ def metadata_files() -> dict[str, str]:
     return {
         f"{folder}/METADATA": metadata(),
         f"{folder}/WHEEL": wheel,
-        f"{folder}/LICENSE": (ROOT / "LICENSE").read_text(),
+        **{f"{folder}/{name}": (ROOT / source).read_text() for name, source in LICENCES.items()},
     }
 
 

@@ -53,6 +53,15 @@ def test_the_distribution_lists_its_files_with_their_digests():
     files = {str(file): file for file in distribution.files or []}
     assert "monograin/py.typed" in files
     assert "monograin/scenarios/die.toml" in files
+    metadata = distribution.metadata
+    assert metadata["Requires-Python"] == ">=3.11"
+    assert metadata["License"] == "GPL-3.0-or-later"
+    assert "Programming Language :: Python :: 3.11" in metadata.get_all("Classifier")
+    for name in metadata.get_all("License-File"):
+        assert f"monograin-{mg.__version__}.dist-info/{name}" in files
+    notices = distribution.read_text("THIRD_PARTY_NOTICES")
+    for library in ("Eigen/*", "boost/*", "fmt/*", "nlohmann/*", "pybind11/*", "toml++/*", "xxhash.h"):
+        assert f"Files: {library}\n" in notices, library
     assert any(name.startswith("monograin/_core") and name.endswith(".so") for name in files)
     for name, file in files.items():
         if file.hash is not None:
