@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -180,6 +181,22 @@ TEST_F(SweepCommand, WarnsOfResultsThatAreAlwaysTheSame) {
   EXPECT_NE(text("stderr.txt").find("it is 0 in every run, and has no sensitivities"), std::string::npos)
       << text("stderr.txt");
   EXPECT_EQ(text("stderr.txt").find("ended before"), std::string::npos) << text("stderr.txt");
+}
+
+TEST_F(SweepCommand, GivesAConstantResultNoSensitivitiesAndTheOthersTheirs) {
+  for (const char* constant : {"2", "max(max.axial.force)"}) {
+    std::string indices = k_indices;
+    indices.replace(indices.find("end.work / max.work"), 19, constant);
+    write_text(path("indices.toml"), index_file(indices));
+    EXPECT_EQ(monograin("sensitivity indices.toml").code, 0) << text("stderr.txt");
+    EXPECT_NE(text("stderr.txt").find(" in every run, and has no sensitivities"), std::string::npos)
+        << text("stderr.txt");
+    const Table table = read_csv(path("runs/indices/sensitivity.csv"));
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      const bool is_constant = table.word(row, *table.find("result")) == constant;
+      EXPECT_EQ(std::isnan(table.at(row, *table.find("total"))), is_constant) << constant << ", row " << row;
+    }
+  }
 }
 
 TEST_F(SweepCommand, WarnsOfRunsThatEndedBeforeTheirPrograms) {

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 [[nodiscard]] bool is_morris(const Sweep& sweep) { return sweep.design == "morris"; }
 
-/// Values of a formula, one for each run.
+/// Values of a formula, one for each run. A constant is the same in every run.
 [[nodiscard]] std::vector<double> values_of(const std::string& formula, const Table& results) {
   std::vector<std::string_view> names;
   for (const Column& column : results.columns()) {
@@ -39,13 +39,12 @@ namespace fs = std::filesystem;
           if (std::ranges::find(names, name) == names.end()) return std::nullopt;
           return results.column(name);
         });
-    if (values.size() == results.row_count()) return values;
+    if (values.size() == 1) values.resize(results.row_count(), values.front());
+    return values;
   } catch (const ExpressionError& error) {
     throw std::runtime_error(
         fmt::format("results: '{}': {}{}", formula, error.what(), did_you_mean(error.unknown_name(), names)));
   }
-  throw std::runtime_error(fmt::format(
-      "results: '{}' has one value for all runs; expected one for each, for example max.axial.force", formula));
 }
 
 [[nodiscard]] std::string with_interval(const Estimate& estimate) {
