@@ -10,6 +10,8 @@
 #include <random>
 #include <string>
 
+#include "scenario/faults.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
@@ -131,6 +133,13 @@ TEST_F(DataReportTest, OfACalibrationHasItsOwnColumns) {
     EXPECT_DOUBLE_EQ(reports[c].y.values.back() * 1e6, calibration.y.values[curve.end - 1]);
     EXPECT_EQ(reports[c].columns[1].values, reports[c].lines.size());
   }
+}
+
+TEST_F(DataReportTest, RefusesTheColumnZeroForColumnsCountFromOne) {
+  const fs::path file = write("d.csv", "a,b\n1,2\n2,3\n3,4\n");
+  EXPECT_EQ(report_of_file(file, {.x = "2", .y = "1"}).x.number, 2U);
+  const std::string message = refusal<ScenarioError>([&] { return report_of_file(file, {.x = "0", .y = "1"}); });
+  EXPECT_TRUE(contains(message, "--x 0: expected a whole number from 1, or a heading")) << message;
 }
 
 }  // namespace
