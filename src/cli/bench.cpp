@@ -142,7 +142,8 @@ void add_bench_command(CLI::App& app, Action& action) {
                       "List of scenes [scenarios/bench/scenes.toml, or that of the program]");
   command->add_option("--integrator", options->integrators, "Integrators to measure [auto and all there are]");
   command->add_option("--rtol", options->tolerances, "Relative tolerances, 1e-15 to 0.1 [1e-2 to 1e-13]")
-      ->check(CLI::Range(1e-15, 0.1));
+      ->check(CLI::Range(1e-15, 0.1))
+      ->check(is_no_nan());
   command->add_flag("--profile", options->profiles, "Also tell where the time goes");
   command->add_flag("--against-fe", options->is_against_fe,
                     "Instead hold every law against finite-element curves: errors, slopes and a figure");

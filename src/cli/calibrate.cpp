@@ -182,7 +182,8 @@ void add_calibrate_command(CLI::App& app, Action& action) {
   command
       ->add_option("--confidence", options->confidence,
                    "Level of the two-sided intervals, between 0 and 1, e.g. 0.99 [the file's, or 0.95]")
-      ->check(CLI::Range(1e-6, 1.0 - 1e-6));
+      ->check(CLI::Range(1e-6, 1.0 - 1e-6))
+      ->check(is_no_nan());
   command->add_flag("--report", options->has_report,
                     "Leave report.md and report.pdf, too: data, figure, intervals, residuals, warnings");
   command->add_flag("--quiet", options->is_quiet, "Print the result, warnings and errors only");

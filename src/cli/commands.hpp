@@ -35,6 +35,9 @@ class UsageError : public std::runtime_error {
 /// @throws UsageError if there is no such model; the message lists the models
 [[nodiscard]] const Model& model_named(const std::string& name);
 
+/// Check of an option that takes a number: refuses nan, which the ranges of CLI11 accept.
+[[nodiscard]] CLI::Validator is_no_nan();
+
 /// Reads files one after another, and reports the faults of all of them together.
 /// @throws ScenarioError with these faults
 void read_each(const std::vector<std::string>& files, const std::function<void(const std::string&)>& read);

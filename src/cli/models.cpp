@@ -171,6 +171,14 @@ int run_models(const ModelsOptions& options) {
 
 }  // namespace
 
+CLI::Validator is_no_nan() {
+  return {[](std::string& text) {
+            double value = 0.0;
+            return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? text + " is no number" : std::string();
+          },
+          ""};
+}
+
 const Model& model_named(const std::string& name) {
   if (const Model* model = find_model(name); model != nullptr) return *model;
   std::vector<std::string_view> names;

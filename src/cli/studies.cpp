@@ -279,7 +279,8 @@ void add_plot_command(CLI::App& app, Action& action) {
       ->add_option(
           "--profile", options->profile,
           "Instant [s], 0 or later: draw pressure and surface under the contacts instead, and write them as CSV")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->check(is_no_nan());
   command->add_option(
       "--x", options->columns.x,
       "Column, with or without its unit, for one panel [displacement of the driven walls; each key of a sweep]");
@@ -317,7 +318,8 @@ void add_compare_command(CLI::App& app, Action& action) {
   command
       ->add_option("--tol", options->tolerance,
                    "Exit with 5 when a largest difference is above this (0 or more), or something is missing in B")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->check(is_no_nan());
   command->footer("Example: monograin compare runs/die runs/softer --tol 1e-6");
   command->callback([options, &action] { action = [options] { return compare(*options); }; });
 }

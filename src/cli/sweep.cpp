@@ -171,7 +171,8 @@ void add_sensitivity_command(CLI::App& app, Action& action) {
   command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
       ->check(CLI::Range(1, 1024));
   command->add_option("--confidence", options->confidence, "Level of the two-sided intervals, between 0 and 1 [0.95]")
-      ->check(CLI::Range(1e-6, 1.0 - 1e-6));
+      ->check(CLI::Range(1e-6, 1.0 - 1e-6))
+      ->check(is_no_nan());
   command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
   command->footer("Example: monograin sensitivity scenarios/sweeps/sobol-indices.toml");
   command->callback([options, &action] { action = [options] { return sensitivity(*options); }; });

@@ -275,6 +275,17 @@ TEST_F(Commands, CompareExitsWithFiveAboveTheTolerance) {
   EXPECT_EQ(monograin("compare a/history.csv missing.csv").code, 2);
 }
 
+TEST_F(Commands, OptionsRefuseNanForANumber) {
+  write_text(path("a.csv"), "time,force\n0,1\n1,2\n");
+  EXPECT_EQ(monograin("compare a.csv a.csv --tol 0").code, 0);
+  for (const char* arguments : {"compare a.csv a.csv --tol nan", "sensitivity s.toml --confidence nan",
+                                "calibrate c.toml --confidence nan", "plot a --profile nan", "bench --rtol nan"}) {
+    const Outcome outcome = monograin(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_NE(outcome.err.find(" = nan is not what it takes"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(Commands, CompareExitsWithFiveWhereTheReferenceIsNotCovered) {
   write_text(path("a.csv"), "time[s],force[N],regime\n0,0,open\n0.1,1,elastic\n0.2,4,elastic\n");
   write_text(path("row.csv"), "time[s],force[N]\n0,0\n");
