@@ -124,7 +124,9 @@ class SweepReader {
   // --- the scenario
 
   void read_scenario_of(const Section& root, const toml::table& tree) {
+    const bool varies_model = tree["vary"].as_table() != nullptr && tree["vary"].as_table()->contains("model");
     if (const toml::table* table = tree["scenario"].as_table()) {
+      if (!varies_model && !is_model_known(*table, file_)) return;
       scenario_tree_ = *table;
       scenario_.emplace(ScenarioSource{.text = text_, .origin = file_.string(), .table = "scenario"});
       scenario_name_ = file_.stem().string();
@@ -144,6 +146,7 @@ class SweepReader {
     }
     try {
       scenario_tree_ = parse_document(scenario_text, file.string());
+      if (!varies_model && !is_model_known(scenario_tree_, file)) return;
       scenario_.emplace(ScenarioSource{.text = scenario_text, .origin = file.string()});
     } catch (const ScenarioError& error) {
       for (const Fault& fault : error.faults()) faults_.add(fault.where, fault.message);
@@ -151,6 +154,17 @@ class SweepReader {
     scenario_name_ = file.stem().string();
     scenario_folder_ = file.parent_path();
     digested_ += '\n' + scenario_text;
+  }
+
+  /// Reports an unknown model, without which no key of a material is known.
+  [[nodiscard]] bool is_model_known(const toml::table& scenario, const fs::path& file) {
+    const auto model = scenario["model"].value<std::string>();
+    if (!model) return true;
+    const auto [value, problem] = read_value(*key_at("model", scenario, {}).spec, *model, {});
+    if (value) return true;
+    faults_.add(place_of(scenario["model"].node()->source(), SourceLocation{file.string()}),
+                fmt::format("model = \"{}\": {}", shown(*model), problem));
+    return false;
   }
 
   void read_radius() {

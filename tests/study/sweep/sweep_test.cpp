@@ -374,6 +374,20 @@ TEST_F(SweepFiles, AFaultOfTheScenarioItselfIsAFault) {
                                    "for example \"50 MPa\"; did you mean 'MPa'?"}));
 }
 
+TEST_F(SweepFiles, AnUnknownModelIsTheOnlyFault) {
+  const std::string vary = "[vary]\n\"material.yield_stress\" = { values = [\"1 MPa\", \"2 MPa\"] }\n";
+  const std::vector<std::string> in_sweep = faults_of(vary + "[scenario]\nmodel = \"mdx\"\n");
+  write("small.toml", "model = \"mdx\"\n");
+  const std::vector<std::string> in_file = faults_of("scenario = \"small.toml\"\n" + vary);
+  ASSERT_EQ(in_sweep.size(), 1U);
+  ASSERT_EQ(in_file.size(), 1U);
+  EXPECT_TRUE(in_sweep[0].starts_with("sweep.toml:4:9: model = \"mdx\": expected one of ")) << in_sweep[0];
+  EXPECT_TRUE(in_file[0].starts_with("small.toml:1:9: model = \"mdx\": expected one of ")) << in_file[0];
+  for (const std::string& fault : {in_sweep[0], in_file[0]}) {
+    EXPECT_TRUE(fault.ends_with("did you mean 'mdr'?")) << fault;
+  }
+}
+
 TEST_F(SweepFiles, AScenarioNeedNotHaveWhatIsVaried) {
   std::string incomplete = k_scenario;
   incomplete.replace(incomplete.find("poisson_ratio = 0.3"), 19, "");
