@@ -20,8 +20,8 @@ namespace {
 // A reload guard that fires together with another event counts if no more than this share of the unloading branch is
 // left to its end.
 constexpr double k_passed = 1e-2;
-// The same share for a wall under force control. It is smaller, because the wall would go back by the missing force
-// over the stiffness of a plastic contact, which is many orders below that of the unloading branch.
+// Share of the unloading branch for a wall under force control. It is smaller than k_passed, because the wall would go
+// back by the missing force over the stiffness of a plastic contact, many orders below that of the unloading branch.
 constexpr double k_passed_by_force = 1e-6;
 // Change of an overlap at one instant (over R0) beyond which the free centre has jumped to another equilibrium.
 constexpr double k_jumped = 1e-9;

@@ -1,0 +1,124 @@
+#include "history/differences.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "system/resolution.hpp"
+
+namespace monograin {
+
+Differences::Differences(const Table& history, const Segments& base, const Table& events,
+                         std::span<const std::size_t> columns, double noise, double value, const Variant* centre)
+    : history_(history),
+      base_(base),
+      events_(events),
+      columns_(columns),
+      noise_(noise),
+      value_(std::abs(value)),
+      centre_(centre),
+      magnitudes_(history.columns().size()) {}
+
+bool Differences::make_pairs(const RunPair& run_pair, bool may_refine) {
+  if (!add_pair(run_pair, step(), base_.output_instants())) return false;
+  for (const std::size_t column : columns_) {
+    magnitudes_[column].value = largest_of(history_.row_count(), [&](std::size_t r) { return history_.at(r, column); });
+    magnitudes_[column].derivative = largest_derivative(column);
+  }
+  if (may_refine) refine(run_pair);
+  return true;
+}
+
+Quotient Differences::in_row(std::size_t row, std::size_t column) const {
+  return best([&](const Partnership& of) { return of.at_row(row, column); }, magnitudes_[column],
+              base_.side(row) != RowSide::output);
+}
+
+double Differences::at_event(std::size_t row, std::size_t column) const {
+  const auto in_history = history_.find(events_.columns()[column].name);
+  if (!in_history) return k_nan;
+  return best([&](const Partnership& of) { return of.at_event(row, column); }, magnitudes_[*in_history], true).value;
+}
+
+double Differences::error() const {
+  double error = 0.0;
+  for (const std::size_t column : columns_) {
+    if (!depends(column)) continue;
+    const double of_column =
+        largest_of(history_.row_count(), [&](std::size_t row) { return in_row(row, column).error(); });
+    error = std::max(error, of_column / largest_derivative(column));
+  }
+  return error;
+}
+
+bool Differences::add_pair(const RunPair& run_pair, double step, const std::vector<double>& instants) {
+  std::unique_ptr<NeighbourPair> pair = run_pair(step, instants);
+  if (!pair) return false;
+  partnerships_.emplace_back(history_, base_, events_, *pair, centre_);
+  pairs_.push_back(std::move(pair));
+  return true;
+}
+
+double Differences::largest_derivative(std::size_t column) const {
+  return largest_of(history_.row_count(), [&](std::size_t row) { return at_row(row, column); });
+}
+
+bool Differences::depends(std::size_t column) const {
+  return magnitudes_[column].derivative > 10.0 * noise_ * magnitudes_[column].value / step();
+}
+
+void Differences::refine(const RunPair& run_pair) {
+  constexpr double k_too_large = 1e-7;  // over the largest derivative of the column
+  constexpr double k_finest_share = 1e-2;
+  double share = 1.0;
+  std::vector<bool> is_coarse(history_.row_count(), false);
+  for (const std::size_t column : columns_) {
+    if (!depends(column)) continue;
+    for (std::size_t row = 0; row < history_.row_count(); ++row) {
+      const auto values = partnerships_[0].at_row(row, column);
+      if (!values) continue;
+      const Quotient of = quotient(*values, magnitudes_[column], step(), false);
+      const double size = magnitudes_[column].derivative;
+      if (of.truncation <= std::max(k_too_large * size, of.round_off)) continue;
+      is_coarse[row] = true;
+      share = std::min(share, std::cbrt(of.round_off / of.truncation));
+    }
+  }
+  if (share == 1.0) return;
+  const std::vector<double> instants = base_.output_instants([&](std::size_t row) { return is_coarse[row]; });
+  add_pair(run_pair, std::max(share, k_finest_share) * step(), instants);
+}
+
+Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, double step, bool is_at_event) const {
+  constexpr double k_as_large = 1e-3;
+  constexpr double k_counts = 1e-6;
+  Quotient result{(of.upper - of.lower) / (2.0 * step), 0.0, noise_ * magnitudes.value / step};
+  const double size = magnitudes.derivative;
+  const double slope = std::abs(result.value);
+  const double bend = of.second_difference() / step;
+  const bool is_round_off = is_at_event && of.second_difference() > k_as_large * of.largest();
+  if (is_round_off && size > 0.0 && 0.5 * bend > k_counts * size) return {k_nan, 0.0, 0.0};
+  const bool may_be_singular = slope > 0.1 * size && bend > result.round_off;
+  result.truncation = std::max(step / value_ * bend / 6.0, may_be_singular ? 0.5 * bend * bend / slope : 0.0);
+  return result;
+}
+
+Quotient Differences::best(const std::function<std::optional<Triple>(const Partnership&)>& values,
+                           const Magnitudes& magnitudes, bool is_at_event) const {
+  std::array<Quotient, 2> of_pairs;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    if (const std::optional<Triple> of = values(partnerships_[k])) {
+      of_pairs[k] = quotient(*of, magnitudes, pairs_[k]->step, is_at_event);
+    }
+  }
+  auto& [coarse, fine] = of_pairs;
+  if (std::isnan(coarse.value) || std::isnan(fine.value)) return coarse;
+  const double difference = std::abs(fine.value - coarse.value);
+  if (difference > coarse.round_off + fine.round_off) {
+    coarse.truncation = difference;
+    fine.truncation = difference * std::pow(pairs_[1]->step / pairs_[0]->step, 2);
+  }
+  return fine.error() < coarse.error() ? fine : coarse;
+}
+
+}  // namespace monograin

@@ -1,0 +1,93 @@
+/// Derivatives of a history as differences of runs with neighbouring values of a number.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "history/partnership.hpp"
+
+namespace monograin {
+
+/// Largest magnitude of a value that rows have. @param value  row -> value
+template <class Value>
+[[nodiscard]] double largest_of(std::size_t rows, Value&& value) {
+  double largest = 0.0;
+  for (std::size_t row = 0; row < rows; ++row) largest = std::fmax(largest, std::abs(value(row)));
+  return largest;
+}
+
+/// Magnitudes of a column of the history.
+struct Magnitudes {
+  double value = 0.0;
+  double derivative = 0.0;
+};
+
+/// A derivative and its absolute errors.
+struct Quotient {
+  double value = k_nan;
+  double truncation = 0.0;
+  double round_off = 0.0;
+
+  [[nodiscard]] double error() const noexcept { return truncation + round_off; }
+};
+
+/// Derivatives of history and events with respect to one key, as central differences. Rows where the runs show that
+/// truncation exceeds what round-off allows get them from a second pair of runs, which writes no other rows.
+class Differences {
+ public:
+  using RunPair = std::function<std::unique_ptr<NeighbourPair>(double step, const std::vector<double>& instants)>;
+
+  /// @param columns  of the history, that have derivatives
+  /// @param noise    relative error of the computed values, over the largest one of the column
+  /// @param value    of the key
+  /// @param centre   run that the pairs are compared with; null: the run of the history itself
+  Differences(const Table& history, const Segments& base, const Table& events, std::span<const std::size_t> columns,
+              double noise, double value, const Variant* centre);
+
+  /// Makes the pairs of runs. @return false if one of the key's values is not admissible
+  bool make_pairs(const RunPair& run_pair, bool may_refine);
+
+  [[nodiscard]] double step() const noexcept { return std::cbrt(noise_) * value_; }
+
+  [[nodiscard]] double at_row(std::size_t row, std::size_t column) const { return in_row(row, column).value; }
+  /// @param column  of the events
+  [[nodiscard]] double at_event(std::size_t row, std::size_t column) const;
+  /// Largest estimated error of a column over its largest derivative.
+  [[nodiscard]] double error() const;
+
+ private:
+  [[nodiscard]] Quotient in_row(std::size_t row, std::size_t column) const;
+  bool add_pair(const RunPair& run_pair, double step, const std::vector<double>& instants);
+  [[nodiscard]] double largest_derivative(std::size_t column) const;
+  /// False if a column does not depend on the number.
+  [[nodiscard]] bool depends(std::size_t column) const;
+  /// Makes a second pair of runs if truncation is too large in some rows. Its step balances the two errors in the worst
+  /// of them.
+  void refine(const RunPair& run_pair);
+  /// Truncation of a central difference from its bend f'' h, which is f''' h^2/6: with f''' = f''/p, as in a smooth
+  /// curve; or with f''' = 3 f''^2/f', as next to a square root, where derivatives are large. In a row at an event, a
+  /// column may be nothing but round-off; its values then differ as much as they are large, and it has no derivative.
+  [[nodiscard]] Quotient quotient(const Triple& of, const Magnitudes& magnitudes, double step, bool is_at_event) const;
+  /// The more accurate quotient of the two pairs. Where they differ by more than round-off, their difference is the
+  /// truncation of the first one.
+  [[nodiscard]] Quotient best(const std::function<std::optional<Triple>(const Partnership&)>& values,
+                              const Magnitudes& magnitudes, bool is_at_event) const;
+
+  const Table& history_;
+  const Segments& base_;
+  const Table& events_;
+  std::span<const std::size_t> columns_;
+  double noise_;
+  double value_;
+  const Variant* centre_;
+  std::vector<Magnitudes> magnitudes_;  ///< of all columns of the history
+  std::vector<std::unique_ptr<NeighbourPair>> pairs_;
+  std::vector<Partnership> partnerships_;  ///< one for each pair
+};
+
+}  // namespace monograin
