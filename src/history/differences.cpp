@@ -79,7 +79,7 @@ void Differences::refine(const RunPair& run_pair) {
       if (!values) continue;
       const Quotient of = quotient(*values, magnitudes_[column], step(), false);
       const double size = magnitudes_[column].derivative;
-      if (of.truncation <= std::max(k_too_large * size, of.round_off)) continue;
+      if (!(of.truncation > std::max(k_too_large * size, of.round_off))) continue;  // NaN is not coarse
       is_coarse[row] = true;
       share = std::min(share, std::cbrt(of.round_off / of.truncation));
     }

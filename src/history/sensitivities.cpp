@@ -163,7 +163,7 @@ template <class Predicate>
   }
 }
 
-/// True if two runs have the same events, and rows at the same instants.
+/// True if two runs have the same events, and the same rows at output points and corners.
 [[nodiscard]] bool have_same_rows(const RunRecord& one, const RunRecord& other) {
   const std::size_t rows = one.history.row_count();
   if (other.history.row_count() != rows || other.events.row_count() != one.events.row_count()) return false;
@@ -182,15 +182,21 @@ void append_last_columns(const Table& from, std::size_t count, Table& to) {
 }
 
 /// Integrates the derivatives with another run, by CVODES.
-/// @return false if that is not possible
-[[nodiscard]] bool add_integrated(Run& run, const Segments& base, const std::function<Scene()>& new_scene) {
+/// @return empty if they are added; otherwise why that is not possible
+[[nodiscard]] std::optional<std::string> add_integrated(Run& run, const Segments& base,
+                                                        const std::function<Scene()>& new_scene) {
   Run other;
   other.scenario = run.scenario;
-  other.scenario.output = {.points = 0, .times = base.output_instants()};
+  Output& output = other.scenario.output;
+  const bool writes_every_step = output.points == 0 && output.times.empty();  // of its own integrator
+  if (writes_every_step) output.times = base.output_instants();
   other.integrator.used = integrators::k_cvode_bdf;
   Scene scene = new_scene();
   const std::size_t columns = run.record.history.columns().size();
-  if (record_with_sensitivities(other, scene, new_scene) || !have_same_rows(run.record, other.record)) return false;
+  if (auto problem = record_with_sensitivities(other, scene, new_scene)) return problem;
+  if (!have_same_rows(run.record, other.record)) {
+    return fmt::format("a run by '{}' has other events", other.integrator.used);
+  }
   const std::size_t count = other.record.history.columns().size() - columns;
   append_last_columns(other.record.history, count, run.record.history);
   append_last_columns(other.record.events, count, run.record.events);
@@ -199,7 +205,7 @@ void append_last_columns(const Table& from, std::size_t count, Table& to) {
     by.why = fmt::format("integrated with another run, by '{}'", other.integrator.used);
     run.sensitivities.push_back(std::move(by));
   }
-  return true;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -242,7 +248,7 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
   return why;
 }
 
-void add_sensitivities(Run& run, const std::string& why, const std::function<Scene(const CheckedScenario&)>& scene_of) {
+void add_sensitivities(Run& run, std::string why, const std::function<Scene(const CheckedScenario&)>& scene_of) {
   const CheckedScenario& scenario = run.scenario;
   Table& history = run.record.history;
   Table& events = run.record.events;
@@ -250,8 +256,14 @@ void add_sensitivities(Run& run, const std::string& why, const std::function<Sce
   const auto new_scene = [&] { return scene_of(scenario); };
   const bool has_forward = has_forward_sensitivities(run.integrator.used);
   bool is_solved = new_scene().system->is_solvable();
-  if (!has_forward && !is_solved && add_integrated(run, base, new_scene)) return;
-  if (has_forward) run.record.warnings.push_back(fmt::format("derivatives are differences of more runs: {}", why));
+  const bool tries_another = !has_forward && !is_solved;
+  if (tries_another) {
+    const auto problem = add_integrated(run, base, new_scene);
+    if (!problem) return;
+    why = *problem;
+  }
+  if (has_forward || tries_another)
+    run.record.warnings.push_back(fmt::format("derivatives are differences of more runs: {}", why));
   const Tolerances tolerances{std::min(scenario.numerics.rtol, k_finest_rtol),
                               std::min(scenario.numerics.atol, k_finest_atol)};
   const auto record = [&](Scene scene, const std::vector<double>& instants) {

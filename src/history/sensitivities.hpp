@@ -33,6 +33,6 @@ struct Run;
 /// in one run and after it in another, and in rows at an event where the column holds nothing but round-off.
 /// @param why       reason for which the derivatives are not integrated with the run
 /// @param scene_of  makes the scene of a scenario with another value of a key
-void add_sensitivities(Run& run, const std::string& why, const std::function<Scene(const CheckedScenario&)>& scene_of);
+void add_sensitivities(Run& run, std::string why, const std::function<Scene(const CheckedScenario&)>& scene_of);
 
 }  // namespace monograin

@@ -217,6 +217,22 @@ TEST(Sensitivities, OfALawWithoutDirectFormAreIntegratedByAnotherRun) {
   }
 }
 
+TEST(Sensitivities, OfALawWithoutDirectFormAreDifferencesWithAWarningIfAnotherRunStops) {
+  const HistoryRun run =
+      run_of(scene_with_key("cel", "material.yield_stress"), {"loading.steps[2].displacement=0.8 R0"});
+  ASSERT_NE(run.record.status, RunStatus::complete);
+  EXPECT_FALSE(run.sensitivities[0].is_forward);
+  EXPECT_TRUE(run.sensitivities[0].why.starts_with("the run is not complete: ")) << run.sensitivities[0].why;
+  const std::string expected = "derivatives are differences of more runs: " + run.sensitivities[0].why;
+  EXPECT_EQ(std::ranges::count(run.record.warnings, expected), 1);
+}
+
+TEST(Sensitivities, OfALawWithoutDirectFormAreIntegratedIfNothingIsWrittenAfterTheStart) {
+  const HistoryRun run =
+      run_of(scene_with_key("cel", "material.yield_stress"), {"output.points=0", "output.times=[0]"});
+  EXPECT_TRUE(run.sensitivities[0].is_forward) << run.sensitivities[0].why;
+}
+
 // A second pair of runs writes only the rows next to where the axial contact is lost.
 TEST(Sensitivities, CountTheEvaluationsOfAllRuns) {
   const std::string with = k_die;

@@ -92,7 +92,8 @@ std::optional<std::size_t> column_of(const TableLayout& layout, Dimension dimens
 
 ColumnRequest request_of_choice(const std::string& choice, const char* option, const std::string& file) {
   ColumnRequest request{.name = choice, .where = {file}, .naming = fmt::format("{} {}", option, shown(choice))};
-  const bool is_number = choice.size() < 6 && choice.find_first_not_of("0123456789") == std::string::npos;
+  const bool is_number =
+      !choice.empty() && choice.size() < 6 && choice.find_first_not_of("0123456789") == std::string::npos;
   if (is_number) {
     request.number = std::stoul(choice);
     if (request.number == 0) throw_fault({file}, request.naming + ": expected a whole number from 1, or a heading");

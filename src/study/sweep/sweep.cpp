@@ -219,7 +219,8 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
   return true;
 }
 
-/// True if a folder has results of this sweep with a complete row for each run. An edited or truncated file is none.
+/// True if a folder has results of this sweep with a complete row for each run, in order. A number that replaces
+/// another one goes unnoticed.
 [[nodiscard]] bool has_results(const Sweep& sweep, const fs::path& folder) {
   std::ifstream in(folder / k_results);
   std::string line;
