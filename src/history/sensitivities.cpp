@@ -208,6 +208,87 @@ void append_last_columns(const Table& from, std::size_t count, Table& to) {
   return std::nullopt;
 }
 
+/// Columns of derivatives of a table, key by key, with their values.
+class DerivativeColumns {
+ public:
+  /// @param columns  of the table, that have derivatives
+  /// @param value    (index of the key, row, column of the table) -> derivative
+  template <class Value>
+  DerivativeColumns(const Table& table, std::span<const std::size_t> columns, const std::vector<SensitivityKey>& keys,
+                    Value&& value) {
+    for (const SensitivityKey& key : keys) {
+      for (const std::size_t column : columns) {
+        const Column& of = table.columns()[column];
+        columns_.push_back(derivative_column(of.name, of.unit, key));
+      }
+    }
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+      for (std::size_t key = 0; key < keys.size(); ++key) {
+        for (const std::size_t column : columns) values_.push_back(value(key, row, column));
+      }
+    }
+  }
+
+  void append_to(Table& table) const {
+    table.append_columns(columns_, [&](std::size_t row, std::size_t c) { return values_[row * columns_.size() + c]; });
+  }
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<double> values_;  ///< row by row
+};
+
+/// Adds derivatives as central differences of two more runs for each key.
+/// @param is_solved  the runs solve for their states directly
+void add_differences(Run& run, const Segments& base, bool is_solved, const std::string& why,
+                     const std::function<Scene(const CheckedScenario&)>& scene_of) {
+  const CheckedScenario& scenario = run.scenario;
+  Table& history = run.record.history;
+  Table& events = run.record.events;
+  const Tolerances tolerances{std::min(scenario.numerics.rtol, k_finest_rtol),
+                              std::min(scenario.numerics.atol, k_finest_atol)};
+  const auto record = [&](Scene scene, const std::vector<double>& instants) {
+    RunRecord made = record_run(scene, is_solved ? std::string(integrators::k_direct) : run.integrator.used, tolerances,
+                                {.points = 0, .times = instants});
+    run.record.statistics.rhs_evaluations += made.statistics.rhs_evaluations;
+    return made;
+  };
+  // Values of a run that is integrated at a coarser tolerance do not belong between those of the other runs.
+  std::unique_ptr<Variant> centre;
+  if (is_solved && !run.integrator.is_direct()) {
+    centre = std::make_unique<Variant>(record(scene_of(scenario), base.output_instants()));
+    is_solved = centre->record.status == run.record.status;
+    if (!is_solved) centre.reset();
+  }
+  const double noise = is_solved ? k_direct_round_off : std::min(scenario.numerics.rtol, k_finest_rtol);
+  const std::vector<std::size_t> of_history = numbers_of(
+      history, [](std::size_t column, const Column&) { return column != k_step_column && column != k_side_column; });
+  const std::vector<std::size_t> of_events =
+      numbers_of(events, [](std::size_t, const Column& column) { return column.name != "step"; });
+  std::vector<std::unique_ptr<Differences>> differences;
+  for (const SensitivityKey& key : scenario.sensitivities) {
+    Differences& of_key = *differences.emplace_back(
+        std::make_unique<Differences>(history, base, events, of_history, noise, key.value, centre.get()));
+    const auto run_pair = [&](double step, const std::vector<double>& instants) {
+      const auto run_with = [&](double number) {
+        return record(scene_of(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1))), instants);
+      };
+      return runs_beside(key, step, run_with, run.record.warnings);
+    };
+    const double error = of_key.make_pairs(run_pair, is_solved) ? of_key.error() : k_nan;
+    run.sensitivities.push_back({key.key, key.value, of_key.step(), error, false, why});
+  }
+  const auto at_row = [&](std::size_t key, std::size_t row, std::size_t c) { return differences[key]->at_row(row, c); };
+  const auto at_event = [&](std::size_t key, std::size_t row, std::size_t c) {
+    return differences[key]->at_event(row, c);
+  };
+  // The derivatives need the tables without them.
+  const DerivativeColumns of_rows(history, of_history, scenario.sensitivities, at_row);
+  const DerivativeColumns at_events(events, of_events, scenario.sensitivities, at_event);
+  of_rows.append_to(history);
+  at_events.append_to(events);
+}
+
 }  // namespace
 
 std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, const std::function<Scene()>& new_scene) {
@@ -249,79 +330,20 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
 }
 
 void add_sensitivities(Run& run, std::string why, const std::function<Scene(const CheckedScenario&)>& scene_of) {
-  const CheckedScenario& scenario = run.scenario;
-  Table& history = run.record.history;
-  Table& events = run.record.events;
-  const Segments base(history);
-  const auto new_scene = [&] { return scene_of(scenario); };
-  const bool has_forward = has_forward_sensitivities(run.integrator.used);
-  bool is_solved = new_scene().system->is_solvable();
-  const bool tries_another = !has_forward && !is_solved;
-  if (tries_another) {
+  const Segments base(run.record.history);
+  const auto new_scene = [&] { return scene_of(run.scenario); };
+  const bool is_solvable = new_scene().system->is_solvable();
+  bool expects_integration = has_forward_sensitivities(run.integrator.used);
+  if (!expects_integration && !is_solvable) {
     const auto problem = add_integrated(run, base, new_scene);
     if (!problem) return;
     why = *problem;
+    expects_integration = true;
   }
-  if (has_forward || tries_another)
+  if (expects_integration) {
     run.record.warnings.push_back(fmt::format("derivatives are differences of more runs: {}", why));
-  const Tolerances tolerances{std::min(scenario.numerics.rtol, k_finest_rtol),
-                              std::min(scenario.numerics.atol, k_finest_atol)};
-  const auto record = [&](Scene scene, const std::vector<double>& instants) {
-    RunRecord made = record_run(scene, is_solved ? std::string(integrators::k_direct) : run.integrator.used, tolerances,
-                                {.points = 0, .times = instants});
-    run.record.statistics.rhs_evaluations += made.statistics.rhs_evaluations;
-    return made;
-  };
-  // Values of a run that is integrated at a coarser tolerance do not belong between those of the other runs.
-  std::unique_ptr<Variant> centre;
-  if (is_solved && !run.integrator.is_direct()) {
-    centre = std::make_unique<Variant>(record(new_scene(), base.output_instants()));
-    is_solved = centre->record.status == run.record.status;
-    if (!is_solved) centre.reset();
   }
-  const double noise = is_solved ? k_direct_round_off : std::min(scenario.numerics.rtol, k_finest_rtol);
-  const std::vector<std::size_t> of_history = numbers_of(
-      history, [](std::size_t column, const Column&) { return column != k_step_column && column != k_side_column; });
-  const std::vector<std::size_t> of_events =
-      numbers_of(events, [](std::size_t, const Column& column) { return column.name != "step"; });
-  std::vector<std::unique_ptr<Differences>> differences;
-  std::vector<Column> row_columns;
-  std::vector<Column> event_columns;
-  for (const SensitivityKey& key : scenario.sensitivities) {
-    Differences& of_key = *differences.emplace_back(
-        std::make_unique<Differences>(history, base, events, of_history, noise, key.value, centre.get()));
-    const auto run_pair = [&](double step, const std::vector<double>& instants) {
-      const auto run_with = [&](double number) {
-        return record(scene_of(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1))), instants);
-      };
-      return runs_beside(key, step, run_with, run.record.warnings);
-    };
-    const double error = of_key.make_pairs(run_pair, is_solved) ? of_key.error() : k_nan;
-    run.sensitivities.push_back({key.key, key.value, of_key.step(), error, false, why});
-    for (const std::size_t column : of_history) {
-      row_columns.push_back(derivative_column(history.columns()[column].name, history.columns()[column].unit, key));
-    }
-    for (const std::size_t column : of_events) {
-      event_columns.push_back(derivative_column(events.columns()[column].name, events.columns()[column].unit, key));
-    }
-  }
-  // The derivatives need the tables without them.
-  std::vector<double> of_rows;
-  std::vector<double> at_events;
-  for (std::size_t row = 0; row < history.row_count(); ++row) {
-    for (const auto& of_key : differences) {
-      for (const std::size_t column : of_history) of_rows.push_back(of_key->at_row(row, column));
-    }
-  }
-  for (std::size_t row = 0; row < events.row_count(); ++row) {
-    for (const auto& of_key : differences) {
-      for (const std::size_t column : of_events) at_events.push_back(of_key->at_event(row, column));
-    }
-  }
-  history.append_columns(row_columns,
-                         [&](std::size_t row, std::size_t c) { return of_rows[row * row_columns.size() + c]; });
-  events.append_columns(event_columns,
-                        [&](std::size_t row, std::size_t c) { return at_events[row * event_columns.size() + c]; });
+  add_differences(run, base, is_solvable, why, scene_of);
 }
 
 }  // namespace monograin
