@@ -5,11 +5,13 @@
 #include <fmt/ranges.h>
 #include <sys/file.h>
 #include <unistd.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <mutex>
 #include <optional>
@@ -38,6 +40,8 @@ constexpr const char* k_journal_extension = ".journal";
 constexpr std::string_view k_program_line = "# program: monograin ";
 constexpr std::size_t k_part = std::size_t{1} << 20U;  // bytes of the results that are written at once
 constexpr const char* k_digest_line = "# sweep_digest: ";
+constexpr std::string_view k_rows_digest_line = "# rows_digest: ";
+constexpr std::size_t k_digest_digits = 16;
 constexpr const char* k_refused = "refused";  // status of a run whose scenario has faults
 /// Tables that are made from the results, each with a figure of the same name.
 constexpr std::array k_made_from_results{k_bands_file, k_sensitivities_file};
@@ -193,49 +197,36 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
   return cells;
 }
 
-[[nodiscard]] bool is_status(std::string_view word) {
-  return word == k_refused ||
-         std::ranges::any_of(std::array{RunStatus::complete, RunStatus::stopped, RunStatus::failed},
-                             [word](RunStatus status) { return word == to_string(status); });
-}
+/// Digest of lines.
+class LinesDigest {
+ public:
+  void add(std::string_view line) { value_ = XXH3_64bits_withSeed(line.data(), line.size(), value_); }
+  [[nodiscard]] std::string word() const { return fmt::format("{:016x}", value_); }
 
-[[nodiscard]] bool is_number(std::string_view cell) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc{} && end == cell.data() + cell.size();
-}
+ private:
+  std::uint64_t value_ = 0;
+};
 
-/// True if a line is the complete row of a run.
-/// @param headings  of the results: a heading with a unit is that of numbers
-[[nodiscard]] bool is_row(std::string_view line, const Sweep& sweep, std::size_t run,
-                          const std::vector<std::string_view>& headings) {
-  const std::string begin = leading_cells(sweep, run);
-  if (!line.starts_with(begin)) return false;
-  const std::vector<std::string_view> cells = split(line.substr(begin.size()));
-  if (cells.size() != headings.size() + 2 || !is_status(cells.front())) return false;
-  for (std::size_t k = 0; k < headings.size(); ++k) {
-    if (headings[k].ends_with(']') && !is_number(cells[k + 2])) return false;
-  }
-  return true;
-}
-
-/// True if a folder has results of this sweep with a complete row for each run, in order. A number that replaces
-/// another one goes unnoticed.
+/// True if a folder has the results of this sweep.
+/// @throws std::runtime_error if it has results, of this or another sweep, that were changed after they were written
 [[nodiscard]] bool has_results(const Sweep& sweep, const fs::path& folder) {
-  std::ifstream in(folder / k_results);
+  const fs::path file = folder / k_results;
+  std::ifstream in(file);
   std::string line;
-  const auto next = [&] { return std::getline(in, line) && !in.eof(); };  // the last line ends with a line break
   bool is_own = false;
-  bool has_line = next();
-  for (; has_line && line.starts_with('#'); has_line = next()) is_own |= line == k_digest_line + sweep.digest;
-  const std::string expected = leading_headings(sweep);
-  if (!is_own || !has_line || !line.starts_with(expected)) return false;
-  const std::string rest = line.substr(std::min(expected.size() + 1, line.size()));
-  const std::vector<std::string_view> headings = split(rest);
-  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
-    if (!next() || !is_row(line, sweep, run, headings)) return false;
+  std::string digest;
+  while (in.peek() == '#' && std::getline(in, line)) {
+    is_own |= line == k_digest_line + sweep.digest;
+    if (line.starts_with(k_rows_digest_line)) digest = line.substr(k_rows_digest_line.size(), k_digest_digits);
   }
-  return !std::getline(in, line);
+  if (digest.empty()) return false;
+  LinesDigest of_rows;
+  while (std::getline(in, line)) of_rows.add(line);
+  if (of_rows.word() == digest) return is_own;
+  throw std::runtime_error(
+      fmt::format("{}: is damaged or edited: its rows do not match its rows_digest; remove or rename it to run the "
+                  "sweep again",
+                  file.string()));
 }
 
 // --- the folder
@@ -332,12 +323,36 @@ class Rows {
   /// Writes the results. All runs have to be finished.
   void write(const TextSink& sink) {
     const std::vector<std::string> columns = all_columns();
-    sink(fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n{}{}{}\n", k_program_line, version(),
-                     sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name,
-                     leading_headings(sweep_), columns.empty() ? "" : ",", fmt::join(columns, ",")));
+    LinesDigest digest;
+    for_each_line(columns, [&digest](std::string_view line) { digest.add(line); });
+    sink(fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n{}{}\n", k_program_line, version(),
+                     sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name, k_rows_digest_line,
+                     digest.word()));
+    std::string text;
+    for_each_line(columns, [&](std::string_view line) {
+      (text += line) += '\n';
+      if (text.size() < k_part) return;
+      sink(text);
+      text.clear();
+    });
+    sink(text);
+  }
+
+ private:
+  struct Place {
+    bool is_there = false;
+    std::uint32_t record = 0;
+    std::uint64_t begin = 0;  ///< of the row in its journal
+  };
+
+  /// Calls a function with the line of headings, and with that of each run.
+  template <class Function>
+  void for_each_line(const std::vector<std::string>& columns, Function&& function) {
+    std::string line = leading_headings(sweep_);
+    for (const std::string& column : columns) (line += ',') += column;
+    function(line);
     std::unordered_map<std::string, std::vector<std::size_t>> targets;  // columns of each layout's cells
     std::vector<std::string_view> cells;
-    std::string text;
     for (std::size_t run = 0; run < places_.size(); ++run) {
       const SweepRow row = row_of(run);
       const std::string& layout = layout_of(run, row);
@@ -350,21 +365,11 @@ class Rows {
       cells.assign(columns.size(), "nan");
       const std::vector<std::string_view> own = split(row.cells);
       for (std::size_t k = 0; k < own.size(); ++k) cells[target->second[k]] = own[k];
-      text += fmt::format("{}{},{}", leading_cells(sweep_, run), row.status, row.reason);
-      for (const std::string_view cell : cells) (text += ',') += cell;
-      text += '\n';
-      if (text.size() < k_part && run + 1 < places_.size()) continue;
-      sink(text);
-      text.clear();
+      line = fmt::format("{}{},{}", leading_cells(sweep_, run), row.status, row.reason);
+      for (const std::string_view cell : cells) (line += ',') += cell;
+      function(line);
     }
   }
-
- private:
-  struct Place {
-    bool is_there = false;
-    std::uint32_t record = 0;
-    std::uint64_t begin = 0;  ///< of the row in its journal
-  };
 
   [[nodiscard]] SweepRow row_of(std::size_t run) { return records_[places_[run].record].row(places_[run].begin); }
   [[nodiscard]] const std::string& layout_of(std::size_t run, const SweepRow& row) const {

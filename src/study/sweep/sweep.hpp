@@ -35,9 +35,10 @@ struct SweepOutcome {
 ///
 /// Finished runs are kept in journals, one for each shard: NAME.journal in the folder. A run that any journal holds is
 /// not repeated. When the journals together hold all runs, they become results.csv and are removed. The file does not
-/// depend on the number of threads, shards and interruptions. A results.csv that lacks a row, or has one that is not
-/// complete, is written anew. A run that is refused, stops or fails is a row with a reason.
-/// @throws std::runtime_error if the folder holds something else, or cannot be written
+/// depend on the number of threads, shards and interruptions. A run that is refused, stops or fails is a row with a
+/// reason.
+/// @throws std::runtime_error if the folder holds something else, or a results.csv that was changed after it was
+///         written, or cannot be written
 [[nodiscard]] SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options);
 
 }  // namespace monograin

@@ -11,6 +11,7 @@
 
 #include "history/run.hpp"
 #include "history/table.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
 
@@ -635,7 +636,7 @@ TEST_F(StoppedSweep, RepeatsARowThatWasDamaged) {
   EXPECT_EQ(results(sweep_, "cut"), whole_);
 }
 
-TEST_F(StoppedSweep, WritesResultsAnewThatLackAnythingOfARun) {
+TEST_F(StoppedSweep, RefusesResultsThatWereChanged) {
   const auto edited = [&](std::string_view old, std::string_view text) {
     const std::size_t at = whole_.rfind(old);
     EXPECT_NE(at, std::string::npos) << old;
@@ -644,24 +645,29 @@ TEST_F(StoppedSweep, WritesResultsAnewThatLackAnythingOfARun) {
   const std::size_t third = whole_.find("\n3,") + 1;
   const std::string row = whole_.substr(third, whole_.find('\n', third) + 1 - third);
   const std::size_t number = row.find(",complete,,") + 11;
-  const std::string words = std::string(row).replace(number, row.find(',', number) - number, "unknown");
+  const std::string another = std::string(row).replace(number, row.find(',', number) - number, "1.5");
+  std::string with_returns;
+  for (const char c : whole_) with_returns += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  fs::create_directory(path("edited"));
   for (const std::string& text :
-       {edited(row, ""), edited(row, row + row), edited(row, words), edited(",complete,", ",done,"),
-        whole_.substr(0, third), whole_.substr(0, whole_.size() - 1), whole_.substr(0, whole_.size() - 5),
-        whole_ + "16\n"}) {
-    fs::remove_all(path("edited"));
-    fs::create_directory(path("edited"));
+       {edited(row, ""), edited(row, row + row), edited(row, another), edited("end.axial.force[N],", ""),
+        edited("end.axial", "final.axial"), edited(",complete,", ",done,"), whole_.substr(0, third),
+        whole_.substr(0, whole_.size() - 5), whole_ + "16\n", with_returns}) {
     write("edited/results.csv", text);
-    EXPECT_EQ(results(sweep_, "edited"), whole_);
+    try {
+      static_cast<void>(results(sweep_, "edited"));
+      ADD_FAILURE() << "the results were taken";
+    } catch (const std::runtime_error& error) {
+      EXPECT_TRUE(contains(error.what(), "results.csv: is damaged or edited")) << error.what();
+    }
+    EXPECT_EQ(read_text(path("edited/results.csv")), text) << "they are left as they were";
   }
   write("edited/results.csv", whole_);
-  const auto now = [&] {
-    return run_sweep(sweep_, {.folder = path("edited"), .threads = 1, .shard = {}, .progress = {}}).runs_now;
-  };
-  EXPECT_EQ(now(), 0U) << "nothing is missing";
+  EXPECT_EQ(run_sweep(sweep_, {.folder = path("edited"), .threads = 1, .shard = {}, .progress = {}}).runs_now, 0U);
   write("edited/results.csv", edited(row, ""));
-  write("edited/sweep.journal", journal_);
-  EXPECT_EQ(now(), 7U) << "the journal has the other eight";
+  EXPECT_THROW(static_cast<void>(results(read("histories = true\n" + std::string(k_grid)), "edited")),
+               std::runtime_error)
+      << "another sweep does not replace them either";
 }
 
 TEST_F(StoppedSweep, ChangedScenariosAndTablesChangeTheDigest) {
