@@ -3,29 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <memory>
-#include <vector>
+
+#include "models/mdr/particles.hpp"
 
 namespace monograin::mdr::resolution_test {
 namespace {
 
-/// Two pairs of opposite walls, the first pressed by `deep` and the second by `shallow`, over R0; E/Y = 50.
+/// Two pairs of opposite walls, the first pressed by `deep` and the second by `shallow`, over R0.
 Particle pressed(double deep, double shallow, bool is_free = true) {
-  const Settings settings{.initial_radius = 1.0,
-                          .youngs_modulus = 50.0,
-                          .poisson_ratio = 0.3,
-                          .yield_stress = 1.0,
-                          .centre_is_free = is_free};
-  const auto wall = [](const char* name, const Eigen::Vector3d& normal) {
-    return ContactClass{.name = name, .normals = {normal}, .gap = 0.0, .takes_force = false};
-  };
-  Particle p(std::make_shared<const Setup>(settings, std::vector{wall("top", {0, 0, 1}), wall("bottom", {0, 0, -1}),
-                                                                 wall("left", {-1, 0, 0}), wall("right", {1, 0, 0})}));
-  p.start();
-  p.set_drives(std::vector{Ramp{deep, deep}, Ramp{deep, deep}, Ramp{shallow, shallow}, Ramp{shallow, shallow}});
-  for (std::size_t i = 0; i < p.size(); ++i) p.set_branch(i, ContactBranch{}.made());
-  p.evaluate(0.0, std::vector<double>(p.setup().unknown_count(), 0.0));
-  return p;
+  return particle_between(
+      {resting({0, 0, 1}, deep), resting({0, 0, -1}, deep), resting({-1, 0, 0}, shallow), resting({1, 0, 0}, shallow)},
+      is_free);
 }
 
 TEST(MdrResolution, GrowsWithTheForcesOnTheCentre) {
