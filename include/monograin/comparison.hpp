@@ -48,11 +48,11 @@ struct Comparison {
 ///
 /// Curves without a common range of x, or that turn back a different number of times, become a gap of their column.
 ///
-/// @param reference  curve a; the columns step and row are not compared
-/// @param other  curve b
-/// @param x  name or heading of a column of a, the abscissa; empty: the first column
-/// @param y  name or heading of a column of a; empty: every column
-/// @throws std::runtime_error if a lacks column x or y, has no other column than x, or if x holds words
+/// @param reference  history of the curves a; its columns step and row are not compared
+/// @param other  history of the curves b
+/// @param x  name or heading of a column of the reference, the abscissa; empty: the first column
+/// @param y  name or heading of a column of the reference; empty: every column
+/// @throws std::runtime_error if the reference lacks column x or y, or has no other column than x, or if x holds words
 [[nodiscard]] Comparison compare(const History& reference, const History& other, const std::string& x = {},
                                  const std::string& y = {});
 

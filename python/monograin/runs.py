@@ -242,8 +242,8 @@ class Run:
 
         Raises:
             FileNotFoundError: if the folder lacks a file of a run.
-            ValueError: if ``run.json`` is not what a run leaves.
-            RuntimeError: if a table of the run is none.
+            ValueError: if ``run.json`` is incomplete or damaged.
+            RuntimeError: if ``history.csv`` or ``events.csv`` is not a table.
         """
         history, events = (Table.read_csv(os.path.join(folder, name)) for name in _FILES[:2])
         file = os.path.join(folder, _FILES[2])
@@ -255,7 +255,7 @@ class Run:
             files = {entry["name"]: entry["text"] for entry in recorded["files"].values()}
             source = _Source(recorded["text"], f"{recorded['name']}.toml", tuple(recorded["overrides"]), files or None)
         except (KeyError, TypeError, json.JSONDecodeError) as error:
-            raise ValueError(f"{file}: not what a run leaves") from error
+            raise ValueError(f"{file}: incomplete or damaged; run the scenario again") from error
         return cls(core, source)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -331,7 +331,15 @@ class Run:
 
     @explained
     def __getitem__(self, column: str) -> NDArray[Any]:
-        """Returns a column of the history, see :meth:`monograin.Table.__getitem__`."""
+        """Returns a column of the history, by its name (``"axial.force"``) or heading (``"axial.force[N]"``).
+
+        Returns:
+            Array of shape (rows,): numbers in the unit of the column, which is SI, or words.
+
+        Raises:
+            KeyError: for an unknown name; the message suggests the nearest column.
+            TypeError: for anything but a str, such as the number of a row.
+        """
         return self._history[column]
 
     def to_pandas(self) -> DataFrame:

@@ -20,8 +20,6 @@ constexpr int k_run_format = 1;  ///< format number of run.json; files of a late
 /// Largest run.json that is read [bytes].
 constexpr std::size_t k_largest_run = std::size_t{256} << 20U;
 
-void write_table(const Table& table, const fs::path& file) { write_text_file(file, csv_text(table)); }
-
 Json versions() { return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}}; }
 
 /// Content of the files that options and steps name, so that the run can be repeated without these files.
@@ -98,8 +96,8 @@ std::string run_json(const Run& run) {
 
 void write_run(Run& run, StagedFolder& folder, const std::function<void(const fs::path&)>& draw) {
   const auto start = std::chrono::steady_clock::now();
-  write_table(run.record.history, folder.path() / k_run_tables[0]);
-  write_table(run.record.events, folder.path() / k_run_tables[1]);
+  write_csv(folder.path() / k_run_tables[0], run.record.history);
+  write_csv(folder.path() / k_run_tables[1], run.record.events);
   run.timings.output = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_text_file(folder.path() / k_run_marker, run_json(run));
   if (draw) draw(folder.path());
@@ -130,8 +128,7 @@ CheckedScenario scenario_of_run(const fs::path& folder) {
                                    scenario.at("overrides").get<std::vector<std::string>>(), files);
   } catch (const Json::exception&) {
     throw std::runtime_error(
-        fmt::format("{}: is not what a run leaves; expected a scenario with name, text and overrides in it, so run it "
-                    "again",
+        fmt::format("{}: is incomplete or damaged; expected a scenario with name, text and overrides: run it again",
                     file.string()));
   }
 }

@@ -96,6 +96,21 @@ void append_row(std::string& text, const Table& table, std::size_t row, int digi
   text += '\n';
 }
 
+/// Passes the text of a table to a sink: the header with the headings, then each row. The text is gathered in a string,
+/// because an output stream would swallow an allocation that fails, and the text would end there.
+template <class Sink>
+void for_each_part(const Table& table, int digits, Sink&& sink) {
+  std::string text;
+  append_header(text, table);
+  append_headings(text, table.columns());
+  sink(text);
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    text.clear();
+    append_row(text, table, row, digits);
+    sink(text);
+  }
+}
+
 // --- reading
 
 constexpr std::string_view k_blanks = " \t\r";
@@ -316,13 +331,14 @@ std::string csv_number(double value) {
   return text;
 }
 
-// Appends to a string: an output stream would swallow an allocation that fails, and the text would end there.
 std::string csv_text(const Table& table, int digits) {
   std::string text;
-  append_header(text, table);
-  append_headings(text, table.columns());
-  for (std::size_t row = 0; row < table.row_count(); ++row) append_row(text, table, row, digits);
+  for_each_part(table, digits, [&text](std::string_view part) { text += part; });
   return text;
+}
+
+void write_csv(const std::filesystem::path& file, const Table& table) {
+  write_text_file(file, [&table](const TextSink& sink) { for_each_part(table, k_all_digits, sink); });
 }
 
 Table read_csv(const std::filesystem::path& file, FileKind kind) {

@@ -99,6 +99,11 @@ void append_csv_number(std::string& text, double value, int digits = k_all_digit
 /// @throws std::invalid_argument if a heading or a word contains a comma, a quote or a line break
 [[nodiscard]] std::string csv_text(const Table& table, int digits = k_all_digits);
 
+/// Writes the text of a table to a file, completely or not at all, without ever holding the whole text.
+/// @throws std::runtime_error naming the file and why it cannot be written
+/// @throws std::invalid_argument as csv_text()
+void write_csv(const std::filesystem::path& file, const Table& table);
+
 /// Reads a file with csv_text(), or any CSV with one row of headings and optional `#` lines.
 /// Blank lines, blanks around cells, a byte order mark and CRLF line ends are accepted; quotes have no meaning. A
 /// column with a cell that is neither a number nor empty is one of words, as is one without numbers. An empty cell is

@@ -101,15 +101,21 @@ fs::path name_of_file(const fs::path& file, FileKind kind) {
 }
 
 void write_text_file(const fs::path& file, std::string_view text) {
-  write_text_file(file, [text](const TextSink& write) { write(text); });
+  PartialFile partial(file);
+  if (!partial.write(text) || !partial.move_to(file)) fail(file, errno);
 }
 
 void write_text_file(const fs::path& file, const std::function<void(const TextSink&)>& produce) {
+  constexpr std::size_t k_block = std::size_t{1} << 20U;  // bytes that are written at once
   PartialFile partial(file);
+  std::string block;
   produce([&](std::string_view part) {
-    if (!partial.write(part)) fail(file, errno);
+    block += part;
+    if (block.size() < k_block) return;
+    if (!partial.write(block)) fail(file, errno);
+    block.clear();
   });
-  if (!partial.move_to(file)) fail(file, errno);
+  if (!partial.write(block) || !partial.move_to(file)) fail(file, errno);
 }
 
 void expect_own_file(const fs::path& file, const fs::path& witness) {

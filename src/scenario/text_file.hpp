@@ -50,7 +50,7 @@ struct NamedText {
 /// @throws std::runtime_error naming the file and why it cannot be written
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
-/// Writes a text that comes in parts, completely or not at all. `produce` passes each part to its sink.
+/// Writes a text that comes in parts of any size, completely or not at all. `produce` passes each part to its sink.
 using TextSink = std::function<void(std::string_view part)>;
 void write_text_file(const std::filesystem::path& file, const std::function<void(const TextSink&)>& produce);
 

@@ -95,7 +95,7 @@ def test_a_run_of_the_program_is_loaded_and_repeated(run_program, tmp_path):
     with pytest.raises(FileNotFoundError):
         mg.Run.load(tmp_path / "nothing")
     (tmp_path / "out" / "run.json").write_text("{}")
-    with pytest.raises(ValueError, match="not what a run leaves"):
+    with pytest.raises(ValueError, match="incomplete or damaged"):
         mg.Run.load(tmp_path / "out")
 
 

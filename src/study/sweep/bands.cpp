@@ -261,7 +261,7 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
 }
 
 std::string write_bands(const Sweep& sweep, const HistoryBands& bands, const fs::path& folder) {
-  write_text_file(folder / k_bands_file, csv_text(table_of(sweep, bands)));
+  write_csv(folder / k_bands_file, table_of(sweep, bands));
   figure::Chart chart;
   for (std::size_t y = 0; y < bands.y.size(); ++y) chart.panels.push_back(panel_of(sweep, bands, y));
   return figure::try_to_draw(chart, "percentiles of the histories of sweep " + sweep.name, folder / "bands.svg");

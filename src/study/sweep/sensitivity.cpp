@@ -254,7 +254,7 @@ std::string sensitivity_text(const Sweep& sweep, const std::vector<ResultSensiti
 
 std::string write_sensitivities(const Sweep& sweep, const std::vector<ResultSensitivity>& found,
                                 const fs::path& folder) {
-  write_text_file(folder / k_sensitivities_file, csv_text(sensitivity_table(sweep, found)));
+  write_csv(folder / k_sensitivities_file, sensitivity_table(sweep, found));
   return figure::try_to_draw(chart_of(sweep, found), "sensitivities of sweep " + sweep.name,
                              folder / "sensitivity.svg");
 }

@@ -38,7 +38,6 @@ namespace fs = std::filesystem;
 constexpr const char* k_results = "results.csv";
 constexpr const char* k_journal_extension = ".journal";
 constexpr std::string_view k_program_line = "# program: monograin ";
-constexpr std::size_t k_part = std::size_t{1} << 20U;  // bytes of the results that are written at once
 constexpr const char* k_digest_line = "# sweep_digest: ";
 constexpr std::string_view k_rows_digest_line = "# rows_digest: ";
 constexpr std::size_t k_digest_digits = 16;
@@ -143,8 +142,6 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
   return fmt::format("{}", fmt::join(messages, "; "));
 }
 
-void keep_history(const Table& history, const fs::path& file) { write_text_file(file, csv_text(history)); }
-
 /// @param histories  folder for the run's history; empty: it is not kept
 /// @param left_out   parts of the run that the results do not depend on
 [[nodiscard]] Outcome run_one(const Sweep& sweep, std::size_t index, const fs::path& histories, const LeftOut& left_out,
@@ -166,7 +163,7 @@ void keep_history(const Table& history, const fs::path& file) { write_text_file(
   outcome.row.status = to_string(record->status);
   outcome.row.reason = plain(record->message);
   summarise(record->history, sweep.columns, layout, outcome);
-  if (!histories.empty()) keep_history(record->history, histories / fmt::format("{}.csv", index + 1));
+  if (!histories.empty()) write_csv(histories / fmt::format("{}.csv", index + 1), record->history);
   return outcome;
 }
 
@@ -328,14 +325,10 @@ class Rows {
     sink(fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n{}{}\n", k_program_line, version(),
                      sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name, k_rows_digest_line,
                      digest.word()));
-    std::string text;
     for_each_line(columns, [&](std::string_view line) {
-      (text += line) += '\n';
-      if (text.size() < k_part) return;
-      sink(text);
-      text.clear();
+      sink(line);
+      sink("\n");
     });
-    sink(text);
   }
 
  private:

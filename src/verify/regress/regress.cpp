@@ -138,8 +138,6 @@ std::vector<RegressionResult> orphaned_curves(const std::vector<fs::path>& scena
   return results;
 }
 
-void store(const fs::path& file, const Table& table) { write_text_file(file, csv_text(table)); }
-
 }  // namespace
 
 std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path& curves) {
@@ -177,8 +175,8 @@ std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs:
                                : fmt::format("integrated, {:g} of each column's largest magnitude",
                                              k_rtol_multiple * scenario.numerics.rtol)};
     for (Table* table : {&run.record.history, &run.record.events}) table->header.push_back(claim);
-    store(curves / (run.scenario.name + ".csv"), run.record.history);
-    store(curves / (run.scenario.name + std::string(k_events_suffix)), run.record.events);
+    write_csv(curves / (run.scenario.name + ".csv"), run.record.history);
+    write_csv(curves / (run.scenario.name + std::string(k_events_suffix)), run.record.events);
   }
   return results;
 }
