@@ -41,10 +41,10 @@ constexpr std::string_view k_after_keys = "status";
   throw FigureError(fmt::format("{}: has no column '{}'{}", file.string(), shown(name), did_you_mean(name, names)));
 }
 
-/// SI value of one unit of a dimension; none if it has no such unit.
-[[nodiscard]] std::optional<double> factor_of(const std::string& unit, Dimension dimension, const Table& table) {
-  if (dimension == Dimension::none) return std::nullopt;
-  return parse_quantity("1 " + unit, dimension, table.header_number("R0")).value;
+/// One unit of a dimension in SI, or the problem.
+[[nodiscard]] ParsedQuantity parsed_unit(const std::string& unit, Dimension dimension, const Table& table) {
+  if (dimension == Dimension::none) return {{}, "the column is shown in its own unit only"};
+  return parse_quantity("1 " + unit, dimension, table.header_number("R0"));
 }
 
 /// The dimension of which a column's unit is the SI unit.
@@ -56,10 +56,8 @@ constexpr std::string_view k_after_keys = "status";
 [[nodiscard]] ColumnAxis axis_of(const Column& column, const std::string& unit, const Table& table) {
   ColumnAxis axis{.unit = is_bare(column.unit) ? std::string() : column.unit, .dimension = dimension_of(column.unit)};
   if (unit.empty() || unit == column.unit) return axis;
-  const auto factor = factor_of(unit, axis.dimension, table);
-  if (!factor) {
-    throw FigureError(fmt::format("'{}' is no unit of '{}'", shown(unit), column.heading()));
-  }
+  const auto [factor, problem, symbol] = parsed_unit(unit, axis.dimension, table);
+  if (!factor) throw FigureError(fmt::format("unit '{}' for '{}': {}", shown(unit), column.heading(), problem));
   axis.unit = unit;
   axis.factor = *factor;
   return axis;
@@ -209,7 +207,7 @@ void add_points(ColumnChart& figure, const MeasuredPoints& points) {
     double factor = 1.0;
     const bool are_bare = is_bare(measured.unit) && axis.unit.empty();
     if (!are_bare && measured.unit != axis.unit) {
-      const auto si = factor_of(measured.unit, axis.dimension, Table{});
+      const auto si = parsed_unit(measured.unit, axis.dimension, Table{}).value;
       if (!si) {
         throw FigureError(fmt::format("measured column '{}' {}; expected a unit of an axis {}", shown(measured.name),
                                       measured.unit.empty() ? "has no unit" : "is in " + shown(measured.unit),

@@ -114,6 +114,15 @@ std::optional<double> unit_factor(std::string_view symbol, const DimensionInfo& 
   return found == info.units.end() ? std::nullopt : std::optional(found->factor);
 }
 
+/// A unit without what is often written otherwise: "n/mm2" of "N/mm^2".
+std::string plain(std::string_view symbol) {
+  std::string result;
+  for (const char c : symbol) {
+    if (c != '^') result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return result;
+}
+
 std::string unknown_unit(std::string_view symbol, const DimensionInfo& info) {
   if (symbol.empty()) return with_expectation("the unit is missing", info);
   if (symbol == info.relative) return with_expectation("the initial radius cannot be given in itself", info);
@@ -123,11 +132,9 @@ std::string unknown_unit(std::string_view symbol, const DimensionInfo& info) {
     const std::string_view noun = other->noun.substr(other->noun.find(' ') + 1);
     return with_expectation(fmt::format("'{}' is a unit of {}", shown(symbol), noun), info);
   }
-  const auto lower = [](unsigned char c) { return std::tolower(c); };
-  const auto other_case = std::ranges::find_if(
-      info.units, [&](const Unit& unit) { return std::ranges::equal(unit.symbol, symbol, {}, lower, lower); });
-  const std::string hint =
-      other_case != info.units.end() ? fmt::format("; did you mean '{}'?", other_case->symbol) : std::string();
+  const auto meant =
+      std::ranges::find_if(info.units, [&](const Unit& unit) { return plain(unit.symbol) == plain(symbol); });
+  const std::string hint = meant != info.units.end() ? fmt::format("; did you mean '{}'?", meant->symbol) : "";
   return with_expectation(fmt::format("unknown unit '{}'", shown(symbol)), info) + hint;
 }
 

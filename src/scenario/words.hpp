@@ -9,7 +9,7 @@
 namespace monograin {
 
 /// The candidate nearest to `word`, if it takes at most two insertions, deletions, replacements or swaps of neighbours
-/// and fewer than the word has letters; otherwise an empty view.
+/// and fewer than the word has letters; otherwise an empty view. Capital and small letters count as equal.
 [[nodiscard]] std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);
 
 /// `; did you mean 'x'?`, or an empty text if no candidate is near.

@@ -88,7 +88,9 @@ TEST_F(ColumnCharts, TakeTheUnitThatIsAskedFor) {
   EXPECT_EQ(figure.chart.panels[0].series[1].y, std::vector{0.9}) << "events, too";
   const ColumnChart relative = column_chart({path("run")}, {.x = "time", .y = "axial.displacement", .unit = "R0"});
   EXPECT_EQ(relative.chart.panels[0].series[0].y, (std::vector{0.0, 0.1}));
-  EXPECT_EQ(fault_of("run", {.unit = "mm"}), "'mm' is no unit of 'axial.force[N]'");
+  EXPECT_EQ(fault_of("run", {.unit = "mm"}),
+            "unit 'mm' for 'axial.force[N]': 'mm' is a unit of length; expected a force, for example \"10 N\"");
+  EXPECT_TRUE(fault_of("run", {.unit = "kn"}).ends_with("did you mean 'kN'?"));
 }
 
 TEST_F(ColumnCharts, ShowASweepOverEachOfItsKeys) {

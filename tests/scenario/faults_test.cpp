@@ -80,6 +80,10 @@ const std::vector<FaultRow> k_rows{
              2,
              "model = \"mrd\"",
              {"die.toml:2:9: model = \"mrd\": expected one of " + k_models + "; did you mean 'mdr'?"}},
+    FaultRow{"ModelInCapitals",
+             2,
+             "model = \"MDR\"",
+             {"die.toml:2:9: model = \"MDR\": expected one of " + k_models + "; did you mean 'mdr'?"}},
     FaultRow{
         "UnknownModel", 2, "model = \"granite\"", {"die.toml:2:9: model = \"granite\": expected one of " + k_models}},
     FaultRow{"ModelIsNoText", 2, "model = 1", {"die.toml:2:9: model = 1: expected one of " + k_models}},
@@ -161,6 +165,11 @@ const std::vector<FaultRow> k_rows{
         "yield_stress = \"50 MPA\"",
         {"die.toml:8:16: yield_stress = \"50 MPA\": unknown unit 'MPA'; expected a stress, for example \"50 MPa\"; "
          "did you mean 'MPa'?"}},
+    FaultRow{"StressUnitWithoutItsCaret",
+             8,
+             "yield_stress = \"50 N/mm2\"",
+             {"die.toml:8:16: yield_stress = \"50 N/mm2\": unknown unit 'N/mm2'; expected a stress, for example \"50 "
+              "MPa\"; did you mean 'N/mm^2'?"}},
     FaultRow{"NegativeSurfaceEnergy",
              8,
              "yield_stress = \"50 MPa\"\nsurface_energy = \"-1 J/m^2\"",
