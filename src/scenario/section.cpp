@@ -92,7 +92,7 @@ bool Section::has_table(std::string_view key) const {
 }
 
 bool Section::has_or_misspells(std::string_view key) const {
-  return has(key) || std::ranges::find(misspelt_, key) != misspelt_.end();
+  return !origin_.is_readable || has(key) || std::ranges::find(misspelt_, key) != misspelt_.end();
 }
 
 std::string Section::text(std::string_view key) const {
@@ -121,7 +121,8 @@ std::vector<std::string> Section::texts(std::string_view key) const {
 Section::Origin Section::table(std::string_view key, std::string label) const {
   const toml::node* node = origin_.table->get(key);
   const toml::table* table = node == nullptr ? nullptr : node->as_table();
-  if (table == nullptr) return {&k_empty_table, origin_.place, std::move(label)};
+  if (table == nullptr)
+    return {&k_empty_table, origin_.place, std::move(label), origin_.is_readable && node == nullptr};
   return {table, value_place(key), std::move(label)};
 }
 

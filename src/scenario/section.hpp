@@ -49,7 +49,8 @@ class Section {
   struct Origin {
     const toml::table* table = nullptr;
     SourceLocation place;
-    std::string label;  ///< for messages: "[particle]"
+    std::string label;        ///< for messages: "[particle]"
+    bool is_readable = true;  ///< false: another value is in the table's place, which has been reported
   };
 
   Section(Reading& reading, Origin origin, std::span<const KeySpec> keys, std::span<const ForeignKey> foreign = {});
@@ -60,7 +61,7 @@ class Section {
   /// True if the text has a table below the key.
   [[nodiscard]] bool has_table(std::string_view key) const;
 
-  /// True if the text contains the key, or a key that was reported as its misspelling.
+  /// True if the text contains the key, or a key that was reported as its misspelling, or no readable table.
   [[nodiscard]] bool has_or_misspells(std::string_view key) const;
 
   /// Value of the key, else its default, else none.

@@ -95,6 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
         OverrideRow{"BrokenArray", "output.times=[1,", "1:17: not valid TOML: the array is not closed; expected ']'"},
         OverrideRow{"BrokenString", "title=\"x",
                     "1:9: not valid TOML: the text is not closed; expected a quote at its end"},
+        OverrideRow{"NumberForATable", "material=1", "1:10: material = 1: expected a table, written [material]"},
         OverrideRow{"ValueOfTheWrongKind", "loading.steps=3",
                     "1:15: steps = 3: expected an array of tables, written [[loading.steps]]"}),
     [](const auto& row) { return std::string(row.param.name); });
