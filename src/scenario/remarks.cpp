@@ -65,6 +65,20 @@ bool only_withdraws(const CheckedScenario& scenario) {
   return !targets.empty() && std::ranges::max(targets) <= 0.0 && std::ranges::min(targets) < 0.0;
 }
 
+/// True if every step holds what is there, or ends at zero, where walls without a gap and materials begin.
+bool does_nothing(const CheckedScenario& scenario) {
+  const auto is_idle = [](const Step& step) {
+    if (step.kind == Step::Kind::hold) return true;
+    const auto control = control_of(step.kind);
+    const bool begins_at_zero = control && *control != Control::packing_fraction;
+    return begins_at_zero && step.target == 0.0 && (!step.lateral || step.lateral->target == 0.0);
+  };
+  const auto is_all_idle = [&](const std::vector<Step>& program) { return std::ranges::all_of(program, is_idle); };
+  const auto has_gap = [](const WallSpec& wall) { return wall.gap > 0.0; };
+  return std::ranges::all_of(programs_of(scenario), is_all_idle) &&
+         std::ranges::none_of(scenario.loading.walls, has_gap);
+}
+
 }  // namespace
 
 std::vector<std::string> remarks_on(const CheckedScenario& scenario) {
@@ -74,6 +88,11 @@ std::vector<std::string> remarks_on(const CheckedScenario& scenario) {
     remarks.emplace_back(
         "no wall moves towards the particle or is pressed on it: displacements are positive inwards, forces in "
         "compression");
+  }
+  if (!is_adhesive(scenario, model) && does_nothing(scenario)) {
+    remarks.emplace_back(
+        "the program does nothing: its steps hold what is there, or end at zero, where they begin; expected a step "
+        "with another target");
   }
   if (model.reservations != nullptr)
     std::ranges::move(model.reservations(model_input(scenario)), std::back_inserter(remarks));
