@@ -34,7 +34,7 @@ void check_scenario(const NamedText& source, const std::vector<std::string>& ove
   check_integrator(scenario);
   std::vector<std::string> remarks = remarks_on(scenario);
   if (auto remark = remark_on_times(scenario)) remarks.push_back(std::move(*remark));
-  for (const std::string& remark : remarks) say("{}: warning: {}\n", scenario.name, remark);
+  say_warnings(scenario.name, remarks);
 }
 
 /// Kind of a file in words.
@@ -50,9 +50,11 @@ void check_content(DocumentType type, NamedText source, const std::vector<std::s
     case DocumentType::scenario:
       check_scenario(source, overrides);
       break;
-    case DocumentType::sweep:
-      static_cast<void>(parse_sweep(std::move(source)));
+    case DocumentType::sweep: {
+      const Sweep sweep = parse_sweep(std::move(source));
+      say_warnings(sweep.name, sweep.doubts);
       break;
+    }
     case DocumentType::experiment_plan:
       static_cast<void>(parse_experiment_plan(std::move(source)));
       break;

@@ -101,6 +101,7 @@ std::size_t run_all(const Sweep& plan, const fs::path& folder, int threads, Swee
 int sweep(const SweepCommandOptions& options) {
   const SweepShard shard = parse_shard(options.shard);
   const Sweep plan = read_sweep(options.file);
+  say_warnings(plan.name, plan.doubts);
   const fs::path folder = folder_of(plan, options.output);
   if (plan.left_out > 0 && !options.is_quiet) {
     say("{}: {} points of the design do not meet the constraints\n", plan.name, plan.left_out);
@@ -124,6 +125,7 @@ struct SensitivityOptions {
 
 int sensitivity(const SensitivityOptions& options) {
   const Sweep plan = read_sweep(options.file);
+  say_warnings(plan.name, plan.doubts);
   if (plan.results.empty()) {
     throw UsageError(fmt::format(
         "{}: design = \"{}\"; expected \"saltelli\" for Sobol indices, or \"morris\" for elementary effects",

@@ -21,4 +21,8 @@ void write_stream(std::FILE* stream, std::string_view text) noexcept {
   static_cast<void>(std::fwrite(text.data(), 1, text.size(), stream));
 }
 
+void say_warnings(std::string_view name, std::span<const std::string> warnings) {
+  for (const std::string& warning : warnings) say("{}: warning: {}\n", name, warning);
+}
+
 }  // namespace monograin

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -30,5 +32,8 @@ template <class... Args>
 void say(fmt::format_string<Args...> format, Args&&... args) {
   write_stream(stderr, fmt::format(format, std::forward<Args>(args)...));
 }
+
+/// Prints warnings about a file or a run, a line each.
+void say_warnings(std::string_view name, std::span<const std::string> warnings);
 
 }  // namespace monograin

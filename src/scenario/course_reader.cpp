@@ -115,6 +115,7 @@ class TableReader {
     if (!to_seconds || !to_si) return {};
     std::vector<Point> points = points_of(*to_seconds, *to_si);
     if (reading_.faults.size() > before) return {};
+    if (data_.columns[1].unit.empty()) doubt_missing_unit_of(points);
     std::optional<double> start;
     if (points.front().time == 0.0) {
       start = points.front().value;
@@ -152,6 +153,17 @@ class TableReader {
     reading_.faults.add(place_of_unit(data_.columns[column]),
                         fmt::format("column '{}': {}", shown(data_.columns[column].heading), one.problem));
     return std::nullopt;
+  }
+
+  /// Doubts the largest value of a column without a unit.
+  void doubt_missing_unit_of(const std::vector<Point>& points) {
+    const auto largest = std::ranges::max_element(points, {}, [](const Point& point) { return std::abs(point.value); });
+    const std::string& heading = data_.columns[1].heading;
+    const std::string name = heading.empty() ? fmt::format("column {}", data_.columns[1].number) : shown(heading);
+    const std::size_t line = data_.lines[static_cast<std::size_t>(largest - points.begin())];
+    doubt_missing_unit(reading_, value_,
+                       {fmt::format("{} = {:.6g} ({}, line {})", name, largest->value, shown(name_), line),
+                        largest->value, heading.empty() ? "a heading x[" : name + "[", "]"});
   }
 
   [[nodiscard]] SourceLocation place_of_unit(const MeasuredColumn& column) const {

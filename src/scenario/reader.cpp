@@ -256,9 +256,9 @@ CheckedScenario read_tree(const toml::table& tree, const std::string& origin, co
   read_numerics(reading, root, language, scenario);
   if (faults_so_far == 0) read_sensitivities(reading, root, tree, language, scenario);
   if (language.model != nullptr && faults_so_far == 0) check_rules(reading, tree, origin, language, scenario);
-  std::ranges::move(reading.doubtful_lengths, std::back_inserter(scenario.doubts));
+  std::ranges::move(reading.doubtful_paths, std::back_inserter(scenario.doubts));
   // Without any unit, the file may be meant in units of its own, with a modulus of one.
-  if (reading.has_units) std::ranges::move(reading.doubtful_stresses, std::back_inserter(scenario.doubts));
+  if (reading.has_units) std::ranges::move(reading.doubtful_scales, std::back_inserter(scenario.doubts));
   return scenario;
 }
 

@@ -19,8 +19,9 @@ using Kind = KeySpec::Kind;
 
 const toml::table k_empty_table;
 
-constexpr double k_soft_stress = 1e3;  // [Pa]; particles are stiffer and stronger than that
-constexpr double k_long_path = 10.0;   // over the radius
+constexpr double k_soft_stress = 1e3;   // [Pa]; particles are stiffer and stronger than that
+constexpr double k_long_path = 10.0;    // over the radius
+constexpr double k_large_radius = 1.0;  // [m]
 
 bool is_identifier(std::string_view text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -75,6 +76,23 @@ FileText text_of_file(const Reading& reading, const std::string& name, std::size
   if (reading.recorded == nullptr) return read_text_file(reading.folder / name, largest);
   const auto found = reading.recorded->find(name);
   return found == reading.recorded->end() ? FileText{{}, "its text was not given"} : FileText{found->second, {}};
+}
+
+void doubt_missing_unit(Reading& reading, const KeySpec& spec, const BareNumber& number) {
+  const double size = std::abs(number.value);
+  const auto doubt = [&](std::vector<std::string>& doubts, std::string_view comparison, std::string_view unit) {
+    doubts.push_back(fmt::format(
+        "{} has no unit and is taken as {:.6g} {}{}; if another unit is meant, write it: {}{}{}", number.assignment,
+        number.value, dimension_info(spec.dimension).si, comparison, number.before_unit, unit, number.after_unit));
+  };
+  if (spec.dimension == Dimension::length && !spec.knows_initial_radius) {
+    if (size > k_large_radius) doubt(reading.doubtful_scales, "", "mm");
+  } else if (spec.dimension == Dimension::length && size > k_long_path * reading.initial_radius) {
+    doubt(reading.doubtful_paths, fmt::format(", {:.3g} times the radius", number.value / reading.initial_radius),
+          "R0");
+  } else if (reading.is_of_material && spec.dimension == Dimension::stress && size > 0.0 && size < k_soft_stress) {
+    doubt(reading.doubtful_scales, "", "MPa");
+  }
 }
 
 Section::Section(Reading& reading, Origin origin, std::span<const KeySpec> keys, std::span<const ForeignKey> foreign)
@@ -373,29 +391,13 @@ void Section::check_tables(const KeySpec& spec, const toml::node& node) {
   }
 }
 
-/// Notes a number without a unit that is unlikely in SI units: a path of many radii, or a modulus or a strength that no
-/// solid has.
-void Section::doubt_missing_unit(const KeySpec& spec, const toml::node& node, double value) {
-  const double size = std::abs(value);
-  const bool is_far =
-      spec.dimension == Dimension::length && spec.knows_initial_radius && size > k_long_path * reading_.initial_radius;
-  const bool is_soft =
-      reading_.is_of_material && spec.dimension == Dimension::stress && size > 0.0 && size < k_soft_stress;
-  if (!is_far && !is_soft) return;
+void Section::doubt_missing_unit(const KeySpec& spec, const toml::node& node, double value) const {
   const SourceLocation place = place_of(node.source(), origin_.place);
   const bool has_line = place.line > 0 && !is_override(place);
-  const std::string written =
-      fmt::format("{} = {}{}", spec.name, shown(node), has_line ? fmt::format(" (line {})", place.line) : "");
-  if (is_far) {
-    reading_.doubtful_lengths.push_back(
-        fmt::format("{} has no unit and is taken as {:.6g} m, {:.3g} times the radius; if another unit is meant, write "
-                    "it: \"{} R0\"",
-                    written, value, value / reading_.initial_radius, shown(node)));
-  } else {
-    reading_.doubtful_stresses.push_back(
-        fmt::format("{} has no unit and is taken as {:.6g} Pa; if another unit is meant, write it: \"{} MPa\"", written,
-                    value, shown(node)));
-  }
+  const std::string line = has_line ? fmt::format(" (line {})", place.line) : "";
+  monograin::doubt_missing_unit(
+      reading_, spec,
+      {fmt::format("{} = {}{}", spec.name, shown(node), line), value, fmt::format("\"{} ", shown(node)), "\""});
 }
 
 std::nullopt_t Section::fault(const KeySpec& spec, const toml::node& node, std::string_view problem) {

@@ -25,15 +25,28 @@ struct Reading {
   std::span<const ForeignKey> homes{};  ///< tables in which keys belong that are found elsewhere
   std::vector<std::string_view> misplaced{};  ///< such keys of the sections so far
   bool is_of_material = false;                ///< the section that is read has constants of the material
-  /// Numbers without a unit whose value in SI units is unlikely, a sentence each.
-  std::vector<std::string> doubtful_lengths{};
-  std::vector<std::string> doubtful_stresses{};
+  /// Numbers without a unit whose value in SI units is unlikely, a sentence each: paths of many radii; then moduli,
+  /// strengths and radii, which a file without any unit may have in units of its own.
+  std::vector<std::string> doubtful_paths{};
+  std::vector<std::string> doubtful_scales{};
   std::filesystem::path folder{};       ///< of the files that the text names
   const FileTexts* recorded = nullptr;  ///< texts of these files; null: they are read
 };
 
 /// Text of a file that a scenario names, or the problem.
 [[nodiscard]] FileText text_of_file(const Reading& reading, const std::string& name, std::size_t largest);
+
+/// A number without a unit, as it is written.
+struct BareNumber {
+  std::string assignment;  ///< with its place: "displacement = 0.4 (line 12)"
+  double value = 0.0;
+  std::string before_unit;  ///< what stands around a unit that is added: "\"0.4 ", "x["
+  std::string after_unit;
+};
+
+/// Notes a number that is unlikely in SI units: a path of many radii, a radius that no particle has, or a modulus or a
+/// strength that no solid has.
+void doubt_missing_unit(Reading& reading, const KeySpec& spec, const BareNumber& number);
 
 /// Reports keys that are neither among `keys` nor, with their reason, among `foreign`.
 /// @return the suggestions made for misspelt keys
@@ -104,7 +117,7 @@ class Section {
   [[nodiscard]] std::optional<Value> read_direction(const KeySpec& spec, const toml::node& node);
   [[nodiscard]] std::optional<Value> read_texts(const KeySpec& spec, const toml::node& node);
   void check_tables(const KeySpec& spec, const toml::node& node);
-  void doubt_missing_unit(const KeySpec& spec, const toml::node& node, double value);
+  void doubt_missing_unit(const KeySpec& spec, const toml::node& node, double value) const;
   std::nullopt_t fault(const KeySpec& spec, const toml::node& node, std::string_view problem);
   std::nullopt_t unexpected(const KeySpec& spec, const toml::node& node, std::string_view suggestion = {});
 

@@ -81,6 +81,16 @@ TEST(Table, HasItsUnitsInHeadingsOrInARowOrIsInSiUnits) {
   EXPECT_EQ(first("t,x\n2,1e-3\n", "x"), std::pair(2.0, 1e-3));
 }
 
+TEST(Table, IsDoubtedWhereItHasNoUnitAndGoesFar) {
+  const std::string target = with_displacement("{ table = \"path.csv\", time = \"t\", value = \"x\" }");
+  EXPECT_EQ(
+      parse(target, "t,x\n0,0\n1,-0.4\n2,0.1\n").doubts,
+      Lines{"x = -0.4 (path.csv, line 3) has no unit and is taken as -0.4 m, -40 times the radius; if another unit "
+            "is meant, write it: x[R0]"});
+  EXPECT_EQ(parse(target, "t,x\n0,0\n1,4e-3\n").doubts, Lines());
+  EXPECT_EQ(parse(with_displacement(k_table), "t[s],x[mm]\n0,0\n1,400\n").doubts, Lines()) << "it has a unit";
+}
+
 TEST(Table, OfForcesIsReadAlike) {
   const std::vector<Step> steps =
       steps_of(with_loading("[loading]\nconfiguration = \"simple\"\nsteps = [{ force = { table = \"path.csv\", time = "

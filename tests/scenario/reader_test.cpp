@@ -101,6 +101,10 @@ TEST(Scenario, QuestionsNumbersThatLackAUnit) {
       "yield_stress = 0.05\n[loading]\nconfiguration = \"simple\"\nsteps = [{ displacement = \"0.4 R0\", duration = "
       "\"1 s\" }]\n";
   EXPECT_EQ(good(own_units).doubts, Lines()) << "the modulus is the unit of stress";
+  EXPECT_EQ(good(with_line(4, "radius = 100")).doubts,
+            Lines{"radius = 100 (line 4) has no unit and is taken as 100 m; if another unit is meant, write it: "
+                  "\"100 mm\""});
+  EXPECT_EQ(good(with_line(4, "radius = 1")).doubts, Lines());
 }
 
 TEST(Scenario, ReadsOptionsOfItsModel) {

@@ -13,6 +13,8 @@
 #include <string_view>
 
 #include "scenario/cells.hpp"
+#include "scenario/document.hpp"
+#include "scenario/overrides.hpp"
 #include "scenario/units.hpp"
 #include "scenario/words.hpp"
 
@@ -57,6 +59,12 @@ std::vector<KeySpec> level_keys(const KeySpec& varied) {
   return !parse_quantity(text, dimension, std::nullopt).value && parse_quantity(text, dimension, 1.0).value;
 }
 
+/// A value as `--set` takes it.
+[[nodiscard]] std::string text_of(const toml::node& node) {
+  const auto text = node.value_exact<std::string>();
+  return text ? in_quotes(*text) : shown(node);
+}
+
 [[nodiscard]] ReadValue read_number(const KeySpec& spec, const std::string& text, const std::string& unit) {
   const std::optional<double> bare = number_in(text);
   if (bare && unit.empty()) return {FactorValue{.number = *bare}, {}};
@@ -95,6 +103,7 @@ class LevelReader {
                                   "highest] }}",
                                   k_example_range));
     }
+    take_ends();
     if (has_range) return read_range();
     if (has_list) return read_list();
     if (!is_quantity()) return;
@@ -112,6 +121,21 @@ class LevelReader {
  private:
   void fault_at(const SourceLocation& where, std::string_view problem) {
     faults_.add(where, fmt::format("{}: {}", label_, problem));
+  }
+
+  /// Takes the first and the last value as they are written.
+  void take_ends() {
+    for (const std::string_view key : {"from", "to", "mean", "values", "lognormal", "triangular"}) {
+      const toml::node* node = table_.get(key);
+      if (node == nullptr) continue;
+      const toml::array* list = node->as_array();
+      if (list == nullptr) {
+        factor_.ends.push_back(text_of(*node));
+      } else if (!list->empty()) {
+        factor_.ends.push_back(text_of(list->front()));
+        if (key != "lognormal") factor_.ends.push_back(text_of(list->back()));
+      }
+    }
   }
 
   [[nodiscard]] bool is_quantity() {

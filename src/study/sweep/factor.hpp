@@ -60,6 +60,7 @@ struct Factor {
   std::optional<FactorRange> range{};
   std::optional<FactorDistribution> distribution{};
   std::vector<FactorValue> values{};
+  std::vector<std::string> ends{};  ///< some first and last value as `--set` takes it; empty: no text gives them
 
   /// The value at a share, between 0 and 1, of the range, the distribution or the list.
   [[nodiscard]] FactorValue at(double share) const;

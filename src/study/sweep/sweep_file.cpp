@@ -86,6 +86,7 @@ class SweepReader {
     check_runs();
     faults_.throw_if_any();
     digest_varied_files();
+    std::vector<std::string> doubts = doubts_of_ends();
 
     return {.name = file_.stem().string(),
             .design = design_,
@@ -99,6 +100,7 @@ class SweepReader {
             .columns = root.texts("columns"),
             .results = root.texts("results"),
             .bands = bands_ ? std::optional(std::move(bands_->request)) : std::nullopt,
+            .doubts = std::move(doubts),
             .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
   }
 
@@ -504,6 +506,12 @@ class SweepReader {
     for (const auto& row : table.rows) {
       if (faults_.size() < k_most_table_faults) take_row(row, units);
     }
+    for (std::size_t f = 0; f < factors_.size(); ++f) {
+      for (const auto* row : {&table.rows.front(), &table.rows.back()}) {
+        const std::string& cell = (*row)[f].text;
+        factors_[f].ends.push_back(units[f].empty() ? cell : in_quotes(fmt::format("{} {}", cell, units[f])));
+      }
+    }
     if (faults_.size() == 0) points_ = points_of(table.rows.size());
   }
 
@@ -622,6 +630,25 @@ class SweepReader {
       }
     }
     for (const Fault& fault : own.value_or(std::vector<Fault>{})) faults_.add(fault.where, fault.message);
+  }
+
+  /// Doubts about the scenario with the last values that are written, or else with the first.
+  [[nodiscard]] std::vector<std::string> doubts_of_ends() const {
+    std::vector<std::string> first;
+    std::vector<std::string> last;
+    for (const Factor& factor : factors_) {
+      if (factor.ends.empty()) continue;
+      first.push_back(fmt::format("{}={}", factor.key, factor.ends.front()));
+      last.push_back(fmt::format("{}={}", factor.key, factor.ends.back()));
+    }
+    for (const auto& values : {last, first}) {
+      try {
+        if (std::vector<std::string> doubts = scenario_->with(values).doubts; !doubts.empty()) return doubts;
+      } catch (const ScenarioError&) {
+        // These values do not go together, and need not.
+      }
+    }
+    return {};
   }
 
   void digest_varied_files() {

@@ -34,6 +34,7 @@ struct Sweep {
   std::vector<std::string> columns;  ///< of the results, e.g. max.axial.force; empty: all final and largest values
   std::vector<std::string> results;  ///< formulas for which indices are estimated
   std::optional<BandRequest> bands{};
+  std::vector<std::string> doubts{};  ///< values that may not be meant as they are read, a sentence each
   std::string digest;  ///< of everything that determines the results: sweep, scenario, tables, program version
 };
 

@@ -99,6 +99,26 @@ double number(const Sweep& sweep, std::size_t run, std::size_t factor) {
 
 // --- designs
 
+TEST_F(SweepFiles, AreDoubtedWhereNumbersLackAUnit) {
+  using Lines = std::vector<std::string>;
+  const auto doubts = [this](const std::string& vary) {
+    return read("scenario = \"small.toml\"\n[vary]\n" + vary + '\n').doubts;
+  };
+  const Lines doubt{
+      "yield_stress = 80 has no unit and is taken as 80 Pa; if another unit is meant, write it: \"80 MPa\""};
+  EXPECT_EQ(doubts("\"material.yield_stress\" = { from = 20, to = 80, points = 3 }"), doubt);
+  EXPECT_EQ(doubts("\"material.yield_stress\" = { values = [\"20 MPa\", 80] }"), doubt);
+  EXPECT_EQ(doubts("\"material.yield_stress\" = { values = [80, \"20 MPa\"] }"), doubt);
+  EXPECT_EQ(doubts("\"material.yield_stress\" = { from = \"20 Pa\", to = \"80 Pa\", points = 3 }"), Lines());
+  EXPECT_EQ(doubts("\"loading.steps[0].displacement\" = { from = \"0.1 R0\", to = \"40 R0\" }"), Lines());
+  EXPECT_EQ(doubts("\"loading.steps[0].displacement\" = { from = 0, to = 0.4 }").size(), 1U);
+  write("runs.csv", "material.yield_stress\n20\n80\n");
+  const std::string table = "scenario = \"small.toml\"\ndesign = \"table\"\ntable = \"runs.csv\"\n";
+  EXPECT_EQ(read(table).doubts, doubt);
+  write("runs.csv", "material.yield_stress[MPa]\n20\n80\n");
+  EXPECT_EQ(read(table).doubts, Lines());
+}
+
 TEST_F(SweepFiles, AGridTakesAllCombinationsTheLastKeyFastest) {
   const Sweep sweep = read(R"toml(scenario = "small.toml"
 [vary]
