@@ -113,6 +113,7 @@ class DataParser {
     }
     for (std::size_t k = 0; k < wanted_.size(); ++k) {
       const std::optional<std::size_t> place = place_of(wanted_[k]);
+      if (!place && found_ > 0 && !doubt_of_separator().empty()) return;  // which hides the other columns, too
       if (!place) continue;
       data_.columns[k].number = *place + 1;
       data_.columns[k].heading = headings[*place];
@@ -304,6 +305,25 @@ class DataParser {
 
 MeasuredData parse_measured(std::string_view bytes, const std::string& origin, const std::vector<ColumnRequest>& wanted,
                             FaultList& faults, const TableFormat& format) {
+  if (format.separator || format.decimal) {
+    FaultList as_given;
+    MeasuredData data = DataParser(origin, wanted, format, as_given).parse(bytes);
+    if (as_given.size() == 0) return data;
+    TableFormat open = format;
+    open.separator.reset();
+    open.decimal.reset();
+    FaultList as_found;
+    data = DataParser(origin, wanted, open, as_found).parse(bytes);
+    if (as_found.size() == 0) {
+      const std::string_view separator = separator_word(data.layout.separator);
+      faults.add({origin, data.layout.first_line, 1},
+                 fmt::format("the table cannot be read with the separator and decimal that are given; it has {0} "
+                             "between the cells and the decimal sign '{1}': expected separator = \"{0}\" and decimal "
+                             "= \"{1}\", or neither key",
+                             separator, data.layout.decimal));
+      return data;
+    }
+  }
   return DataParser(origin, wanted, format, faults).parse(bytes);
 }
 
