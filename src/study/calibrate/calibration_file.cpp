@@ -30,7 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace calibration;
 
-constexpr std::size_t k_most_zeros = 20;  // of weights, that are reported one by one
+constexpr std::size_t k_most_zeros = 20;       // of weights, that are reported one by one
+constexpr double k_largest_deflection = 10.0;  // of the machine, over the measured travel
 
 class CalibrationReader {
  public:
@@ -213,8 +214,9 @@ class CalibrationReader {
     const fs::path path = file_.parent_path() / name;
     const auto [text, problem] = text_of_data(name, path);
     if (!problem.empty()) {
-      faults_.add(data.value_place("file"), fmt::format("file = \"{}\": {} ({}); expected a path relative to this file",
-                                                        shown(name), problem, on_one_line(path.string())));
+      faults_.add(data.value_place("file"),
+                  fmt::format("file = \"{}\": {} ({}); expected a table, such as CSV, its path relative to this file",
+                              shown(name), problem, on_one_line(path.string())));
       return {};
     }
     curve.file = path.string();
@@ -232,6 +234,7 @@ class CalibrationReader {
   /// Text of a file of data, or why there is none.
   [[nodiscard]] FileText text_of_data(const std::string& name, const fs::path& path) const {
     const auto given = data_.find(name);
+    if (path.extension() == ".toml") return {{}, "this is a TOML file, not measured data"};
     FileText read = given != data_.end() ? FileText{given->second, {}} : read_text_file(path, k_largest_data);
     if (read.problem.empty() && read.text.size() > k_largest_data) {
       read.problem = fmt::format("the file is too large; expected at most {} MiB", k_largest_data >> 20U);
@@ -399,6 +402,27 @@ class CalibrationReader {
     } else if ((has_force_offset || is_free(k_force_offset)) && !x.ends_with(".force") && !y.ends_with(".force")) {
       faults_.add(root.value_place("data"),
                   fmt::format("a force_offset takes a force; x and y are '{}' and '{}'", x, y));
+    }
+    if (has_both) {
+      check_deflections(root.value_place("data"), x.ends_with(k_displacement) ? made_.x.values : made_.y.values,
+                        x.ends_with(k_displacement) ? made_.y.values : made_.x.values);
+    }
+  }
+
+  /// Reports a frame that would yield by far more than what was measured together with the particle.
+  void check_deflections(const SourceLocation& where, std::span<const double> displacements,
+                         std::span<const double> forces) {
+    for (const MeasuredCurve& curve : made_.curves) {
+      const std::size_t count = curve.end - curve.begin;
+      const auto [least, most] = std::ranges::minmax(forces.subspan(curve.begin, count));
+      const auto [first, last] = std::ranges::minmax(displacements.subspan(curve.begin, count));
+      const double deflection = std::abs(curve.machine.addition(most) - curve.machine.addition(least));
+      if (deflection <= k_largest_deflection * (last - first)) continue;
+      faults_.add(
+          where, fmt::format("compliance: the frame would yield by {:.4g} m under the forces of {}, where the measured "
+                             "displacement changes by {:.4g} m; expected a compliance below {:.2g} m/N, for example "
+                             "\"20 nm/N\"",
+                             deflection, on_one_line(curve.file), last - first, (last - first) / (most - least)));
     }
   }
 

@@ -166,6 +166,19 @@ TEST_F(MachineCalibration, RefusesAWritingThatThereIsNot) {
             "compliance = \"20 nm\": expected a length over a force, 0 or more, for example \"20 nm/N\"");
 }
 
+TEST_F(MachineCalibration, RefusesAFrameThatYieldsByFarMoreThanWasMeasured) {
+  const auto messages = faults([&] { return read_plain(k_uniaxial, "", "compliance = 2"); });
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_NE(messages.front().find("compliance: the frame would yield by "), std::string::npos) << messages.front();
+  EXPECT_EQ(faults([&] { return read_plain(k_uniaxial, "", "compliance = \"20 nm/N\""); }).size(), 0U);
+}
+
+TEST_F(MachineCalibration, RefusesATomlFileAsData) {
+  const auto messages = faults([&] { return read_plain("c.toml"); });
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_NE(messages.front().find("this is a TOML file, not measured data"), std::string::npos) << messages.front();
+}
+
 // --- the machine between sensor and particle
 
 TEST(Machine, AddsOffsetComplianceAndTable) {
