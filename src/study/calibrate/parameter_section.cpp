@@ -26,6 +26,7 @@
 namespace monograin::calibration {
 namespace {
 
+constexpr double k_farthest_prior = 5.0;   // from the bounds, in standard deviations
 constexpr double k_ratio_for_log = 100.0;  // of bounds; from this ratio on the logarithm of the parameter is sought
 
 /// Keys of a table that are no free numbers of the scenario, or that TOML splits because they lack quotes.
@@ -237,6 +238,14 @@ void check_prior(Reading& reading, const Section& distribution, const Prior& pri
     }
     parameter.lower = lower;
     parameter.upper = upper;
+  }
+  const double nearest = std::clamp(prior.first, parameter.lower, parameter.upper);
+  if (const double distance = std::abs(prior.deviation(nearest)); distance > k_farthest_prior) {
+    return reading.faults.add(
+        distribution.value_place(word, 0),
+        fmt::format("{}: {} is outside of the bounds in [free], by {:.3g} standard deviations; expected bounds that "
+                    "contain it, or a larger standard deviation",
+                    word, shown(values[0]), distance));
   }
   parameter.prior = prior;
 }

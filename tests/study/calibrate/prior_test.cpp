@@ -218,6 +218,9 @@ TEST_F(LinearCalibration, RefusesPriorsAndNoiseThatMakeNoSense) {
             "10:29: a prior with 2 distributio");
   EXPECT_EQ(prior(modulus + "{ uniform = [\"400 GPa\", \"500 GPa\"] }").substr(0, 38),
             "10:42: uniform: expected an interval t");
+  EXPECT_EQ(prior(modulus + "{ normal = [\"9000 GPa\", \"1 GPa\"] }").substr(0, 81),
+            "10:41: normal: 9000 GPa is outside of the bounds in [free], by 8.7e+03 standard d");
+  EXPECT_EQ(prior(modulus + "{ normal = [\"9000 GPa\", \"5000 GPa\"] }"), "") << "a wide one reaches the bounds";
   EXPECT_EQ(fault("noise = { absolute = \"2 N\" }\nweights = \"relative\"", "").substr(0, 34),
             "7:1: key 'weights' does not go wit");
   EXPECT_EQ(fault("noise = { absolute = \"2 mm\" }", "").substr(0, 47),
