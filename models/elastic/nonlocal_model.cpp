@@ -106,14 +106,17 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
 /// Displacement over R0 of the first driven wall at the limit of applicability, if all walls go on as in their first
 /// step. None if a wall is under force control, if none moves, or if the limit lies beyond the centre of the particle.
 std::optional<double> limit_displacement(const ModelInput& input, const FirstStep& step) {
+  double fastest = 0.0;  // [m] in the first step
+  for (const Ramp& ramp : step.ramps) fastest = std::max(fastest, std::abs(ramp.rate()));
   std::vector<Ramp> ramps;
   std::optional<Ramp> driven;
   double end = k_infinity;  // where a wall reaches the centre
   for (const Ramp& ramp : step.ramps) {
     if (ramp.control == Control::force) return std::nullopt;
-    ramps.push_back({ramp.start / input.radius, ramp.end / input.radius, Control::displacement});
-    const double start = ramps.back().start;
-    const double speed = ramps.back().end - start;
+    // The fastest wall goes as far as R0 per step: the path is as long whatever the first step is.
+    const double start = ramp.start / input.radius;
+    const double speed = fastest > 0.0 ? ramp.rate() / fastest : 0.0;
+    ramps.push_back({start, start + speed, Control::displacement});
     if (speed > 0.0) end = std::min(end, (1.0 - start) / speed);
     if (!driven && speed != 0.0) driven = ramps.back();
   }
