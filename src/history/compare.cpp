@@ -350,6 +350,18 @@ struct PathIntegrals {
   return {};
 }
 
+/// Describes rows without an abscissa, which are not compared, if only one of the curves has such rows.
+[[nodiscard]] std::string undefined_rows(std::span<const double> x_a, std::span<const double> x_b) {
+  const auto undefined = [](std::span<const double> x) {
+    return std::ranges::count_if(x, [](double value) { return std::isnan(value); });
+  };
+  const auto in_a = undefined(x_a);
+  const auto in_b = undefined(x_b);
+  if ((in_a == 0) == (in_b == 0)) return {};
+  return fmt::format("is undefined in {} of {} rows, and in {} of {} of the reference", in_b, x_b.size(), in_a,
+                     x_a.size());
+}
+
 /// Length of the abscissa that makes it a pure number: R0 for a length of a particle, and the range of any other
 /// quantity with a unit. The area error depends on it.
 [[nodiscard]] double unit_of_path(const Table& a, const std::string& x) {
@@ -424,6 +436,9 @@ Comparison compare_tables(const Table& a, const Table& b, const std::string& x, 
   }
   const auto x_a = a.column(place);
   const auto x_b = b.column(place);
+  if (std::string problem = undefined_rows(x_a, x_b); !problem.empty()) {
+    result.gaps.push_back({place, std::move(problem)});
+  }
   const double unit = unit_of_path(a, place);
   for (const std::string& heading : headings) {
     std::string problem = missing_column(a, b, heading);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "scenario/text_encoding.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "system/resolution.hpp"
@@ -164,7 +165,7 @@ class CsvText {
       if (end > k_longest_line) {
         fail(fmt::format("the line is too long; expected at most {} MiB", k_longest_line >> 20U), k_longest_line + 1);
       }
-      take_line(trimmed(text.substr(0, end), k_blanks));
+      take_line(trimmed(text.substr(0, end), separator_ == '\t' ? " \r" : k_blanks));
       text.remove_prefix(std::min(end + 1, text.size()));
     }
     if (columns_.empty()) fail("no row of headings");
@@ -200,6 +201,8 @@ class CsvText {
   }
 
   void take_headings(std::string_view line) {
+    const std::size_t other = line.find_first_of(k_other_separators);
+    if (other != std::string_view::npos && line.find(',') == std::string_view::npos) separator_ = line[other];
     std::unordered_set<std::string_view> seen;
     for_each_cell(line, [&](std::string_view heading) {
       if (heading.empty()) fail(fmt::format("column {} has no heading", columns_.size() + 1));
@@ -224,20 +227,28 @@ class CsvText {
   }
 
   template <class Visit>
-  static void for_each_cell(std::string_view line, Visit visit) {
+  void for_each_cell(std::string_view line, Visit visit) const {
     for (;;) {
-      const std::size_t comma = line.find(',');
-      visit(trimmed(line.substr(0, comma), k_blanks));
-      if (comma == std::string_view::npos) return;
-      line.remove_prefix(comma + 1);
+      const std::size_t end = line.find(separator_);
+      visit(trimmed(line.substr(0, end), k_blanks));
+      if (end == std::string_view::npos) return;
+      line.remove_prefix(end + 1);
     }
+  }
+
+  /// Number in a cell; where commas do not separate cells, they mark decimals.
+  [[nodiscard]] std::optional<double> number_of(std::string_view cell) const {
+    if (separator_ == ',' || cell.find(',') == std::string_view::npos) return parsed_number(cell);
+    std::string with_point(cell);
+    std::ranges::replace(with_point, ',', '.');
+    return parsed_number(with_point);
   }
 
   void fill_column(std::size_t column, std::vector<double>& values) {
     bool has_numbers = false;
     bool has_words = false;
     for (std::size_t k = column; k < cells_.size() && !has_words; k += columns_.size()) {
-      const auto number = parsed_number(cells_[k]);
+      const auto number = number_of(cells_[k]);
       has_numbers = has_numbers || number;
       has_words = !number && !cells_[k].empty();
       values[k] = number.value_or(std::numeric_limits<double>::quiet_NaN());
@@ -255,8 +266,11 @@ class CsvText {
     }
   }
 
+  static constexpr std::string_view k_other_separators = ";\t";
+
   std::string name_;
   std::size_t line_ = 0;
+  char separator_ = ',';
   std::vector<std::pair<std::string, std::string>> header_;
   std::vector<Column> columns_;
   std::vector<std::string_view> cells_;  ///< row by row, pointing into the text
@@ -343,7 +357,12 @@ void write_csv(const std::filesystem::path& file, const Table& table) {
 
 Table read_csv(const std::filesystem::path& file, FileKind kind) {
   const std::string name = name_of_file(file, kind).string();
-  const auto [text, problem] = read_text_file(file, k_largest_csv, kind);
+  auto [text, problem] = read_text_file(file, k_largest_csv, kind);
+  const bool is_wide = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+  if (DecodedText decoded = is_wide ? decode_text(text) : DecodedText{}; is_wide) {
+    text = std::move(decoded.text);
+    problem = std::move(decoded.problem);
+  }
   if (!problem.empty()) throw std::runtime_error(fmt::format("{}:1:1: {}; expected a table (CSV)", name, problem));
   return CsvText(name, text).table();
 }

@@ -104,7 +104,8 @@ void append_csv_number(std::string& text, double value, int digits = k_all_digit
 /// @throws std::invalid_argument as csv_text()
 void write_csv(const std::filesystem::path& file, const Table& table);
 
-/// Reads a file with csv_text(), or any CSV with one row of headings and optional `#` lines.
+/// Reads a file with csv_text(), or any CSV with one row of headings and optional `#` lines. Without a comma among the
+/// headings, semicolons or tabs separate the cells, and commas mark decimals; UTF-16 is read by its byte order mark.
 /// Blank lines, blanks around cells, a byte order mark and CRLF line ends are accepted; quotes have no meaning. A
 /// column with a cell that is neither a number nor empty is one of words, as is one without numbers. An empty cell is
 /// undefined among numbers (NaN) and the empty word among words.

@@ -276,6 +276,21 @@ TEST(CompareTables, NamesEveryColumnThatTheOtherLacksOrHasInAnotherUnit) {
   EXPECT_EQ(gaps(history(1), without_x), Sentences{"time[s] is missing"});
 }
 
+TEST(CompareTables, NamesAPlaceThatOnlyOneOfThemDefines) {
+  const auto table = [](double second) {
+    Table made({{"time", "s", {}}, {"force", "N", {}}});
+    for (const double time : {0.0, second, 2.0}) made.append({{time, 1.0}});
+    return made;
+  };
+  const auto gaps = [&](double in_a, double in_b) { return compare_tables(table(in_a), table(in_b), "", "").gaps; };
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_EQ(gaps(1.0, none).size(), 1u);
+  EXPECT_EQ(gaps(1.0, none)[0].column, "time[s]");
+  EXPECT_EQ(gaps(1.0, none)[0].problem, "is undefined in 1 of 3 rows, and in 0 of 3 of the reference");
+  EXPECT_EQ(gaps(none, 1.0).size(), 1u);
+  EXPECT_EQ(gaps(none, none).size(), 0u);
+}
+
 TEST(CompareTables, NamesTheColumnThatIsNotCovered) {
   Table shorter({{"time", "s", {}}, {"force", "N", {}}});
   shorter.append(std::array{0.0, 0.0});

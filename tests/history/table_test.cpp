@@ -196,6 +196,23 @@ TEST_F(CsvFile, MayHaveForeignLineEndsBlankLinesAndBlanks) {
   EXPECT_EQ(table.column("force"), (std::vector{1.0, 2.0}));
 }
 
+TEST_F(CsvFile, MayBeWrittenByASpreadsheet) {
+  for (const char* text : {"# R0: 1\ntime[s];force[N];regime\n0,5;-2,5e-3;elastic, soft\n1;;plastic\n",
+                           "# R0: 1\ntime[s]\tforce[N]\tregime\n0,5\t-2,5e-3\telastic, soft\n1\t\tplastic\n"}) {
+    const Table table = read(text);
+    EXPECT_EQ(table.column("time"), (std::vector{0.5, 1.0})) << text;
+    EXPECT_EQ(table.column("force[N]").front(), -2.5e-3);
+    EXPECT_TRUE(std::isnan(table.column("force[N]").back()));
+    EXPECT_EQ(table.word(0, 2), "elastic, soft");
+    EXPECT_EQ(table.header_number("R0"), 1.0);
+  }
+  std::string wide = "\xFF\xFE";
+  for (const char c : std::string("a,b\n1,2\n")) wide.append({c, '\0'});
+  EXPECT_EQ(read(wide).column("b"), std::vector{2.0});
+  EXPECT_EQ(fault_of(wide + 'x'),
+            "history.csv:1:1: it begins as UTF-16LE and is not: it may be cut off; expected a table (CSV)");
+}
+
 TEST_F(CsvFile, NeedsNoLineBreakAtTheEnd) { EXPECT_EQ(read("x\n1\n2").row_count(), 2u); }
 
 TEST_F(CsvFile, KeepsCommentsWithoutAKey) {
