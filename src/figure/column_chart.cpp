@@ -38,7 +38,9 @@ constexpr std::string_view k_after_keys = "status";
   }
   std::vector<std::string_view> names;
   for (const Column& column : table.columns()) names.push_back(column.name);
-  throw FigureError(fmt::format("{}: has no column '{}'{}", file.string(), shown(name), did_you_mean(name, names)));
+  const std::string suggestion = did_you_mean(name, names);
+  throw FigureError(fmt::format("{}: has no column '{}'{}", file.string(), shown(name),
+                                suggestion.empty() ? "; expected one of " + on_one_line(listed(names)) : suggestion));
 }
 
 /// One unit of a dimension in SI, or the problem.

@@ -66,6 +66,11 @@ TEST_F(ColumnCharts, FindColumnsWithAndWithoutTheirUnits) {
             std::string::npos);
 }
 
+TEST_F(ColumnCharts, ListTheColumnsWhereNoneIsNear) {
+  EXPECT_NE(fault_of("run", {.y = "force"}).find("has no column 'force'; expected one of time, "), std::string::npos)
+      << fault_of("run", {.y = "force"});
+}
+
 TEST_F(ColumnCharts, ShowNoWords) {
   EXPECT_NE(fault_of("sweep", {.y = "status"}).find("column 'status' holds words; expected numbers"),
             std::string::npos);
