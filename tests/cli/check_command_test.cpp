@@ -58,6 +58,18 @@ TEST_F(CheckCommand, ReportsTheFaultsOfAllFilesTogether) {
   EXPECT_NE(outcome.err.find("none.toml"), std::string::npos) << outcome.err;
 }
 
+TEST_F(CheckCommand, DoubtsNumbersOfASweepThatLackAUnitAsTheSweepDoes) {
+  write("sweep.toml", "scenario = \"good.toml\"\n[vary]\n\"material.yield_stress\" = { values = [20, 30] }\n");
+  const std::string doubt =
+      "sweep: warning: yield_stress = 30 has no unit and is taken as 30 Pa; if another unit is meant, write it: \"30 "
+      "MPa\"\n";
+  const Outcome outcome = monograin("check sweep.toml");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, "sweep.toml: sweep, valid\n");
+  EXPECT_EQ(outcome.err, doubt);
+  EXPECT_TRUE(monograin("sweep sweep.toml").err.starts_with(doubt));
+}
+
 TEST_F(CheckCommand, OverridesKeysOfScenariosOnly) {
   EXPECT_EQ(monograin("check good.toml --set material.poisson_ratio=0.2").code, 0);
   const Outcome outcome = monograin("check sweep.toml --set material.poisson_ratio=0.2");
