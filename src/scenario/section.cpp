@@ -392,9 +392,9 @@ void Section::check_tables(const KeySpec& spec, const toml::node& node) {
 }
 
 void Section::doubt_missing_unit(const KeySpec& spec, const toml::node& node, double value) const {
-  const SourceLocation place = place_of(node.source(), origin_.place);
-  const bool has_line = place.line > 0 && !is_override(place);
-  const std::string line = has_line ? fmt::format(" (line {})", place.line) : "";
+  // Nodes of a template have no place.
+  const bool has_line = node.source().begin.line > 0 && !is_override(place_of(node.source(), origin_.place));
+  const std::string line = has_line ? fmt::format(" (line {})", node.source().begin.line) : "";
   monograin::doubt_missing_unit(
       reading_, spec,
       {fmt::format("{} = {}{}", spec.name, shown(node), line), value, fmt::format("\"{} ", shown(node)), "\""});

@@ -112,6 +112,10 @@ TEST_F(SweepFiles, AreDoubtedWhereNumbersLackAUnit) {
   EXPECT_EQ(doubts("\"material.yield_stress\" = { from = \"20 Pa\", to = \"80 Pa\", points = 3 }"), Lines());
   EXPECT_EQ(doubts("\"loading.steps[0].displacement\" = { from = \"0.1 R0\", to = \"40 R0\" }"), Lines());
   EXPECT_EQ(doubts("\"loading.steps[0].displacement\" = { from = 0, to = 0.4 }").size(), 1U);
+  const std::string own = std::string(k_scenario).replace(std::string(k_scenario).find("\"20 MPa\""), 8, "80");
+  write("small.toml", own);
+  EXPECT_EQ(doubts("\"material.poisson_ratio\" = { from = 0.2, to = 0.3 }"), doubt) << "of the scenario's own";
+  write("small.toml", k_scenario);
   write("runs.csv", "material.yield_stress\n20\n80\n");
   const std::string table = "scenario = \"small.toml\"\ndesign = \"table\"\ntable = \"runs.csv\"\n";
   EXPECT_EQ(read(table).doubts, doubt);
