@@ -368,4 +368,22 @@ void read_levels(Reading& reading, const toml::table& table, const SourceLocatio
   LevelReader(reading, table, place, levels, factor).read();
 }
 
+std::vector<std::string> doubts_about(const ScenarioTemplate& scenario, std::span<const Factor> factors) {
+  std::vector<std::string> first;
+  std::vector<std::string> last;
+  for (const Factor& factor : factors) {
+    if (factor.ends.empty()) continue;
+    first.push_back(fmt::format("{}={}", factor.key, factor.ends.front()));
+    last.push_back(fmt::format("{}={}", factor.key, factor.ends.back()));
+  }
+  for (const auto& values : {last, first}) {
+    try {
+      if (std::vector<std::string> doubts = scenario.with(values).doubts; !doubts.empty()) return doubts;
+    } catch (const ScenarioError&) {
+      // These values do not go together, and need not.
+    }
+  }
+  return {};
+}
+
 }  // namespace monograin

@@ -6,6 +6,7 @@
 #include <array>
 #include <compare>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -99,5 +100,8 @@ enum class Levels {
 /// `{ triangular }` or `{ values }`.
 void read_levels(Reading& reading, const toml::table& table, const SourceLocation& place, Levels levels,
                  Factor& factor);
+
+/// Doubts about the scenario with the last values that are written, or else with the first: numbers without a unit.
+[[nodiscard]] std::vector<std::string> doubts_about(const ScenarioTemplate& scenario, std::span<const Factor> factors);
 
 }  // namespace monograin

@@ -9,7 +9,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "history/run.hpp"
@@ -36,16 +35,6 @@ namespace fs = std::filesystem;
 using Kind = KeySpec::Kind;
 
 constexpr double k_most_maxpro_runs = 1e5;
-/// Text of the part of the file that determines the runs: without the evaluation of results, comments and layout.
-[[nodiscard]] std::string text_of_runs(const toml::table& tree) {
-  toml::table runs = tree;
-  runs.erase("results");
-  if (runs.erase("bands") > 0) runs.insert_or_assign("histories", true);
-  std::ostringstream text;
-  text.exceptions(std::ios::badbit);  // an allocation that fails must not cut the text
-  text << runs;
-  return text.str();
-}
 
 class SweepReader {
  public:
@@ -55,7 +44,7 @@ class SweepReader {
   [[nodiscard]] Sweep read() {
     const toml::table tree = parse_document(text_, file_.string());
     expect_type(tree, file_.string(), DocumentType::sweep);
-    digested_ = text_of_runs(tree);
+    digested_ = sweep::text_of_runs(tree);
     const std::vector<KeySpec> keys = sweep::root_keys(tree["scenario"].is_table());
     const SourceLocation top{file_.string()};
     const Section root(reading_, {&tree, top, "the sweep"}, keys);
@@ -86,7 +75,7 @@ class SweepReader {
     check_runs();
     faults_.throw_if_any();
     digest_varied_files();
-    std::vector<std::string> doubts = doubts_of_ends();
+    std::vector<std::string> doubts = doubts_about(*scenario_, factors_);
 
     return {.name = file_.stem().string(),
             .design = design_,
@@ -630,25 +619,6 @@ class SweepReader {
       }
     }
     for (const Fault& fault : own.value_or(std::vector<Fault>{})) faults_.add(fault.where, fault.message);
-  }
-
-  /// Doubts about the scenario with the last values that are written, or else with the first.
-  [[nodiscard]] std::vector<std::string> doubts_of_ends() const {
-    std::vector<std::string> first;
-    std::vector<std::string> last;
-    for (const Factor& factor : factors_) {
-      if (factor.ends.empty()) continue;
-      first.push_back(fmt::format("{}={}", factor.key, factor.ends.front()));
-      last.push_back(fmt::format("{}={}", factor.key, factor.ends.back()));
-    }
-    for (const auto& values : {last, first}) {
-      try {
-        if (std::vector<std::string> doubts = scenario_->with(values).doubts; !doubts.empty()) return doubts;
-      } catch (const ScenarioError&) {
-        // These values do not go together, and need not.
-      }
-    }
-    return {};
   }
 
   void digest_varied_files() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <sstream>
 
 namespace monograin::sweep {
 
@@ -82,6 +83,16 @@ std::vector<KeySpec> band_keys() {
        .range = {.lower = 2.0, .upper = 10000.0},
        .default_value = 51.0},
   };
+}
+
+std::string text_of_runs(const toml::table& tree) {
+  toml::table runs = tree;
+  runs.erase("results");
+  if (runs.erase("bands") > 0) runs.insert_or_assign("histories", true);
+  std::ostringstream text;
+  text.exceptions(std::ios::badbit);  // an allocation that fails must not cut the text
+  text << runs;
+  return text.str();
 }
 
 }  // namespace monograin::sweep

@@ -1,7 +1,10 @@
-/// Keys of a sweep file, and the designs that use them.
+/// Keys of a sweep file, and the designs that use them. For readers of TOML files: includes the library.
 #pragma once
 
+#include <toml++/toml.h>
+
 #include <array>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,5 +29,8 @@ inline constexpr std::string_view k_index_designs = "saltelli, morris";
 
 /// Keys of the percentile bands of histories.
 [[nodiscard]] std::vector<KeySpec> band_keys();
+
+/// Text of the part of a sweep file that determines the runs: without the evaluation of results, comments and layout.
+[[nodiscard]] std::string text_of_runs(const toml::table& tree);
 
 }  // namespace monograin::sweep
