@@ -358,8 +358,8 @@ void write_csv(const std::filesystem::path& file, const Table& table) {
 Table read_csv(const std::filesystem::path& file, FileKind kind) {
   const std::string name = name_of_file(file, kind).string();
   auto [text, problem] = read_text_file(file, k_largest_csv, kind);
-  const bool is_wide = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
-  if (DecodedText decoded = is_wide ? decode_text(text) : DecodedText{}; is_wide) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    DecodedText decoded = decode_text(text);
     text = std::move(decoded.text);
     problem = std::move(decoded.problem);
   }
