@@ -54,6 +54,9 @@ class Drive {
     DriveResult result;
     try {
       run_program();
+    } catch (LostSensitivities& lost) {
+      lost.evaluations = evaluations();
+      throw;
     } catch (const Stop& stop) {
       stop_at(stop.point, stop.message, result);
     } catch (const CannotBegin& error) {
@@ -74,7 +77,7 @@ class Drive {
       }
     }
     result.statistics = integrator_->statistics();
-    if (sensitivities_ != nullptr) result.statistics.rhs_evaluations += sensitivities_->evaluations();
+    result.statistics.rhs_evaluations = evaluations();
     result.statistics.events = event_count_;
     for (const Diagnostic& warning : system_.warnings()) {
       result.warnings.push_back(fmt::format("{} ({} = {:.6g})", warning.message, warning.quantity, warning.value));
@@ -107,6 +110,12 @@ class Drive {
       end_step(is_met, log);
     }
     rows_.close_instant(xi_, y_, log);
+  }
+
+  /// Evaluations of the equations of the run and of the neighbours that give its derivatives.
+  [[nodiscard]] long evaluations() const {
+    const long of_neighbours = sensitivities_ != nullptr ? sensitivities_->evaluations() : 0;
+    return integrator_->statistics().rhs_evaluations + of_neighbours;
   }
 
   [[nodiscard]] const Leg& leg(std::size_t step) const { return scene_.longest_program()[step].leg; }

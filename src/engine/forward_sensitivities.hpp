@@ -36,6 +36,7 @@ namespace monograin {
 class LostSensitivities : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  long evaluations = 0;  ///< of the equations of run and neighbours so far; a drive sets them
 };
 
 /// Scenes for a slightly smaller and a slightly larger value of a number.

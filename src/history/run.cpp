@@ -177,8 +177,10 @@ Run run_scenario(const CheckedScenario& scenario, const SystemWrapper& wrapped) 
   const bool is_plain = scenario.sensitivities.empty();
   const auto why_differences = is_plain ? std::nullopt : record_with_sensitivities(run, scene, new_scene);
   if (is_plain || why_differences) {
+    const long of_attempt = run.record.statistics.rhs_evaluations;
     run.record =
         record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, scenario.output);
+    run.record.statistics.rhs_evaluations += of_attempt;
   }
   run.timings.integration = watch.lap();
   std::ranges::move(remarks_on(scenario), std::back_inserter(run.record.warnings));

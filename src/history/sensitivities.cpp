@@ -193,14 +193,15 @@ void append_last_columns(const Table& from, std::size_t count, Table& to) {
   other.integrator.used = integrators::k_cvode_bdf;
   Scene scene = new_scene();
   const std::size_t columns = run.record.history.columns().size();
-  if (auto problem = record_with_sensitivities(other, scene, new_scene)) return problem;
+  auto problem = record_with_sensitivities(other, scene, new_scene);
+  run.record.statistics.rhs_evaluations += other.record.statistics.rhs_evaluations;
+  if (problem) return problem;
   if (!have_same_rows(run.record, other.record)) {
     return fmt::format("a run by '{}' has other events", other.integrator.used);
   }
   const std::size_t count = other.record.history.columns().size() - columns;
   append_last_columns(other.record.history, count, run.record.history);
   append_last_columns(other.record.events, count, run.record.events);
-  run.record.statistics.rhs_evaluations += other.record.statistics.rhs_evaluations;
   for (Sensitivity& by : other.sensitivities) {
     by.why = fmt::format("integrated with another run, by '{}'", other.integrator.used);
     run.sensitivities.push_back(std::move(by));
@@ -319,8 +320,10 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
       }
       return std::nullopt;
     }
+    run.record.statistics.rhs_evaluations = record.statistics.rhs_evaluations;
     why = fmt::format("the run is not complete: {}", record.message);
   } catch (const LostSensitivities& lost) {
+    run.record.statistics.rhs_evaluations = lost.evaluations;
     why = lost.what();
   } catch (const ScenarioError& error) {
     why = error.faults().front().message;

@@ -16,7 +16,7 @@ struct Run;
 /// @param scene      scene of the run; replaced with a new one if the derivatives cannot be integrated
 /// @param new_scene  makes a scene for the run
 /// @return empty if run and derivatives are recorded; otherwise why the derivatives cannot be integrated, and nothing
-///         is recorded
+///         is recorded but the evaluations of the attempt
 [[nodiscard]] std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene,
                                                                    const std::function<Scene()>& new_scene);
 

@@ -246,6 +246,19 @@ TEST(Sensitivities, CountTheEvaluationsOfAllRuns) {
   EXPECT_LT(static_cast<double>(by_stress), 3.7 * static_cast<double>(alone));
 }
 
+TEST(Sensitivities, CountTheEvaluationsOfAnAttemptThatIsGivenUp) {
+  for (const char* integrator : {"cvode-bdf", "ida"}) {
+    const std::vector<std::string> stopped{fmt::format("numerics.integrator={}", integrator), "numerics.rtol=1e-8",
+                                           "loading.steps[2].displacement=0.9 R0"};
+    std::string text = scene_with_key("cel", "material.yield_stress");
+    const long alone = run_of(scene("cel"), stopped).record.statistics.rhs_evaluations;
+    const HistoryRun run = run_of(text, stopped);
+    ASSERT_FALSE(run.sensitivities[0].is_forward);
+    EXPECT_GT(run.record.statistics.rhs_evaluations, 6 * alone)
+        << integrator << ": differences take five, the attempt two";
+  }
+}
+
 // The dissipation is a small difference of work and stored energy.
 TEST(Sensitivities, IntegratedStateTheErrorOfTheDissipation) {
   const std::string text = scene_with_key("cycles", "material.youngs_modulus");
