@@ -9,12 +9,14 @@
 namespace monograin {
 
 Differences::Differences(const Table& history, const Segments& base, const Table& events,
-                         std::span<const std::size_t> columns, double noise, double value, const Variant* centre)
+                         std::span<const std::size_t> columns, double noise, double share, double value,
+                         const Variant* centre)
     : history_(history),
       base_(base),
       events_(events),
       columns_(columns),
       noise_(noise),
+      share_(share),
       value_(std::abs(value)),
       centre_(centre),
       magnitudes_(history.columns().size()) {}

@@ -44,15 +44,16 @@ class Differences {
 
   /// @param columns  of the history, that have derivatives
   /// @param noise    relative error of the computed values, over the largest one of the column
+  /// @param share    step of the first pair, over the value
   /// @param value    of the key
   /// @param centre   run that the pairs are compared with; null: the run of the history itself
   Differences(const Table& history, const Segments& base, const Table& events, std::span<const std::size_t> columns,
-              double noise, double value, const Variant* centre);
+              double noise, double share, double value, const Variant* centre);
 
   /// Makes the pairs of runs. @return false if one of the key's values is not admissible
   bool make_pairs(const RunPair& run_pair, bool may_refine);
 
-  [[nodiscard]] double step() const noexcept { return std::cbrt(noise_) * value_; }
+  [[nodiscard]] double step() const noexcept { return share_ * value_; }
 
   [[nodiscard]] double at_row(std::size_t row, std::size_t column) const { return in_row(row, column).value; }
   /// @param column  of the events
@@ -83,6 +84,7 @@ class Differences {
   const Table& events_;
   std::span<const std::size_t> columns_;
   double noise_;
+  double share_;
   double value_;
   const Variant* centre_;
   std::vector<Magnitudes> magnitudes_;  ///< of all columns of the history

@@ -23,6 +23,9 @@ namespace monograin {
 namespace {
 
 constexpr double k_direct_round_off = 1e-14;  // relative, of states that `direct` solves for
+// Step of differences of such states, over the step that balances round-off and truncation of smooth curves: next to a
+// square root, truncation is much larger.
+constexpr double k_shorter = 0.25;
 constexpr double k_finest_atol = 1e-14;  // upper bound of atol of runs for differences; that of rtol is k_finest_rtol
 
 // Step of the neighbours over the value of the key. It balances the error of the difference quotient next to a square
@@ -262,6 +265,7 @@ void add_differences(Run& run, const Segments& base, bool is_solved, const std::
     if (!is_solved) centre.reset();
   }
   const double noise = is_solved ? k_direct_round_off : std::min(scenario.numerics.rtol, k_finest_rtol);
+  const double share = (is_solved ? k_shorter : 1.0) * std::cbrt(noise);
   const std::vector<std::size_t> of_history = numbers_of(
       history, [](std::size_t column, const Column&) { return column != k_step_column && column != k_side_column; });
   const std::vector<std::size_t> of_events =
@@ -269,7 +273,7 @@ void add_differences(Run& run, const Segments& base, bool is_solved, const std::
   std::vector<std::unique_ptr<Differences>> differences;
   for (const SensitivityKey& key : scenario.sensitivities) {
     Differences& of_key = *differences.emplace_back(
-        std::make_unique<Differences>(history, base, events, of_history, noise, key.value, centre.get()));
+        std::make_unique<Differences>(history, base, events, of_history, noise, share, key.value, centre.get()));
     const auto run_pair = [&](double step, const std::vector<double>& instants) {
       const auto run_with = [&](double number) {
         return record(scene_of(scenario.variants->with({}, std::span(&key.key, 1), std::span(&number, 1))), instants);

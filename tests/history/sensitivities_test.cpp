@@ -171,13 +171,14 @@ TEST(Sensitivities, AreAccurateNextToTheSquareRootAtTheLossOfAContact) {
       for (const char* name : {"axial.contact_radius", "axial.pressure", "axial.force"}) {
         const double error = error_before_fifth_loss(run, key, name);
         EXPECT_LT(error, 2e-7) << integrator << ", " << key << ", " << name;
-        EXPECT_LT(error, 3.0 * run.sensitivities[0].error) << integrator << ", " << key << ", " << name;
+        EXPECT_LT(error, run.sensitivities[0].error) << integrator << ", " << key << ", " << name;
       }
     }
   }
 }
 
-TEST(Sensitivities, AreUndefinedWhereAGapClosesInAColumnOfRoundOff) {
+// A contact radius is zero where the contact is made, whatever the number, but known only to round-off.
+TEST(Sensitivities, AreUndefinedOrZeroWhereAGapClosesInAColumnOfRoundOff) {
   for (const char* integrator : {"direct", "arkode-erk"}) {
     const HistoryRun run = run_of(scene_with_key("late-wall", "material.yield_stress"),
                                   {fmt::format("numerics.integrator={}", integrator)});
@@ -187,7 +188,8 @@ TEST(Sensitivities, AreUndefinedWhereAGapClosesInAColumnOfRoundOff) {
       return row;
     }();
     ASSERT_LT(made, run.record.events.row_count());
-    EXPECT_TRUE(std::isnan(of_event(run, made, "d(right.contact_radius)/d(material.yield_stress)"))) << integrator;
+    const double at_event = of_event(run, made, "d(right.contact_radius)/d(material.yield_stress)");
+    EXPECT_TRUE(std::isnan(at_event) || at_event == 0.0) << integrator << ": " << at_event;
     EXPECT_TRUE(std::isfinite(of_event(run, made, "d(time)/d(material.yield_stress)"))) << integrator;
     const Table& history = run.record.history;
     const std::vector<double> radius = column(run, "d(right.contact_radius)/d(material.yield_stress)");
@@ -244,6 +246,17 @@ TEST(Sensitivities, CountTheEvaluationsOfAllRuns) {
   EXPECT_LT(static_cast<double>(by_radius), 3.2 * static_cast<double>(alone));
   EXPECT_GT(by_stress, by_radius);
   EXPECT_LT(static_cast<double>(by_stress), 3.7 * static_cast<double>(alone));
+}
+
+TEST(Sensitivities, ByDifferencesTakeAtMostThreeMoreRuns) {
+  const std::array<std::array<const char*, 3>, 3> cases{{{"cycles", "particle.radius", "output.points=50"},
+                                                         {"die", "material.yield_stress", "output.points=20"},
+                                                         {"die", "material.youngs_modulus", "output.points=20"}}};
+  for (const auto& [name, key, points] : cases) {
+    const long alone = run_of(scene(name), {points}).record.statistics.rhs_evaluations;
+    const long with = run_of(scene_with_key(name, key), {points}).record.statistics.rhs_evaluations;
+    EXPECT_LE(with, 4 * alone) << name << ", " << key;
+  }
 }
 
 TEST(Sensitivities, CountTheEvaluationsOfAnAttemptThatIsGivenUp) {
