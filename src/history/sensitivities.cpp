@@ -35,6 +35,7 @@ constexpr double k_share = 2e-5;
 // ida is larger, because its steps use a larger share of the tolerance.
 constexpr double k_forward_error = 30.0;
 constexpr double k_forward_error_of_ida = 100.0;
+constexpr double k_counts = 1e-6;  // round-off of a derivative that counts, over the largest one of its column
 
 [[nodiscard]] std::string quotient_unit(const std::string& unit, const std::string& by) {
   if (by == "-") return unit.empty() ? "-" : unit;
@@ -65,9 +66,8 @@ constexpr double k_forward_error_of_ida = 100.0;
 
 /// Removes the last columns of a table, which hold the round-off of the derivatives in the columns before them. A
 /// derivative becomes NaN if its round-off exceeds 1e-6 of the largest derivative in its column.
-/// @param largest  largest derivative between events, one for each column of derivatives
+/// @param largest  one for each column of derivatives
 [[nodiscard]] Table without_round_off(const Table& wide, const std::vector<double>& largest) {
-  constexpr double k_counts = 1e-6;
   const std::size_t count = largest.size();
   const std::size_t width = wide.columns().size() - count;
   Table table({wide.columns().begin(), wide.columns().end() - static_cast<std::ptrdiff_t>(count)});
@@ -82,13 +82,15 @@ constexpr double k_forward_error_of_ida = 100.0;
   return table;
 }
 
-/// Largest absolute derivative between events, for each of the `count` columns before the `count` columns of round-off.
-[[nodiscard]] std::vector<double> largest_between_events(const Table& wide, std::size_t count) {
+/// Largest absolute derivative, for each of the `count` columns before the `count` columns of round-off. A derivative
+/// at an event counts if round-off of the instant does not.
+[[nodiscard]] std::vector<double> largest_derivatives(const Table& wide, std::size_t count) {
   std::vector<double> largest;
   const std::size_t first = wide.columns().size() - 2 * count;
   for (std::size_t column = first; column < first + count; ++column) {
     largest.push_back(largest_of(wide.row_count(), [&](std::size_t row) {
-      return side_of(wide, row) == RowSide::output ? wide.at(row, column) : 0.0;
+      const double derivative = wide.at(row, column);
+      return wide.at(row, column + count) <= k_counts * std::abs(derivative) ? derivative : 0.0;
     }));
   }
   return largest;
@@ -310,7 +312,7 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
     RunRecord record = record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol},
                                   scenario.output, carried, columns);
     if (record.status == RunStatus::complete) {
-      const std::vector<double> largest = largest_between_events(record.history, columns.size() / 2);
+      const std::vector<double> largest = largest_derivatives(record.history, columns.size() / 2);
       record.history = without_round_off(record.history, largest);
       record.events = without_round_off(record.events, largest);
       run.record = std::move(record);

@@ -380,6 +380,23 @@ void expect_forward_as_direct(const std::string& text, const std::string& key, c
   }
 }
 
+TEST(Sensitivities, OfEventsAreThoseOfAFullHistoryIfNothingIsWrittenAfterTheStart) {
+  for (const char* integrator : {"direct", "cvode-bdf", "ida"}) {
+    const std::vector<std::string> with{fmt::format("numerics.integrator={}", integrator)};
+    const HistoryRun full = run_of(k_die, with);
+    const HistoryRun bare = run_of(k_die, {with[0], "output.points=0", "output.times=[0]"});
+    for (const char* name : {"time", "axial.force", "work", "lateral.force"}) {
+      const std::string heading = fmt::format("d({})/d(material.yield_stress)", name);
+      const std::vector<double> expected = full.record.events.column(heading);
+      const std::vector<double> actual = bare.record.events.column(heading);
+      ASSERT_EQ(actual.size(), expected.size());
+      for (std::size_t row = 0; row < actual.size(); ++row) {
+        EXPECT_NEAR(actual[row], expected[row], 1e-6 * largest(expected)) << integrator << ", " << name << ", " << row;
+      }
+    }
+  }
+}
+
 TEST(Sensitivities, IntegratedAreThoseOfDirectUnderForceAndConditions) {
   const std::string text = with_steps(R"([
   { force = "2 kN", duration = "1 s", until = { force = "1 kN" } },
