@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "engine/explicit_form.hpp"
@@ -57,6 +58,8 @@ struct ForwardSensitivities::Side {
   std::vector<double> begin_y{};
   std::vector<double> y{}, rates{}, guards{};
   std::vector<double> begin_guards{};  ///< guards where the segment begins; nan if they have no values there
+  std::optional<std::size_t> quadrature{};
+  std::optional<double> primitive_offset{};  ///< of the quadrature, if it has a closed form in the segment
 
   Side(Scene made, double its_sign)
       : scene(std::move(made)),
@@ -65,6 +68,9 @@ struct ForwardSensitivities::Side {
         y(scene.system->unknowns().size()),
         rates(y.size()) {
     for (const Channel& channel : scene.channels) held.push_back(channel.at_rest);
+    const auto unknowns = scene.system->unknowns();
+    const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
+    if (found != unknowns.end()) quadrature = static_cast<std::size_t>(found - unknowns.begin());
   }
   [[nodiscard]] HybridSystem& system() noexcept { return *scene.system; }
   [[nodiscard]] double time() const noexcept { return clock.time(xi); }
@@ -73,11 +79,21 @@ struct ForwardSensitivities::Side {
     begin = xi;
     begin_y = y;
     begin_guards.resize(guard_set.size());
+    primitive_offset.reset();
     try {
+      if (quadrature && !system().is_quadrature_costly()) {
+        if (const auto primitive = system().closed_quadrature(xi, y)) primitive_offset = y[*quadrature] - *primitive;
+      }
       guard_set.values(xi, y, begin_guards);
     } catch (const std::domain_error&) {
       std::ranges::fill(begin_guards, k_nan);
     }
+  }
+  /// Completes the state. The quadrature gets its closed form, if it has one, in place of the integrated value: the
+  /// derivative of the work behaves like a square root where a contact is lost, and integrators lose digits there.
+  void complete() {
+    system().complete(xi, y);
+    if (primitive_offset) y[*quadrature] = *primitive_offset + *system().closed_quadrature(xi, y);
   }
   void go_back() {
     xi = begin;
@@ -92,7 +108,7 @@ struct ForwardSensitivities::Side {
   void shift(double length) {
     for (std::size_t i = 0; i < y.size(); ++i) y[i] += length * rates[i];
     xi += length;
-    system().complete(xi, y);
+    complete();
   }
   void go_to_guard(std::span<const std::size_t> fired);
   void expect_same_guards(const HybridSystem& base, std::span<const Event> log, std::span<const Event> of_side) const;
@@ -286,7 +302,7 @@ void ForwardSensitivities::place(Number& number, double xi, std::span<const doub
     }
     expect_near(side, y);
     side.xi = xi + distance * (sigma_at(number, xi) + beyond);
-    side.system().complete(side.xi, side.y);
+    side.complete();
   }
 }
 
