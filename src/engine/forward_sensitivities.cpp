@@ -516,8 +516,10 @@ std::span<const double> ForwardSensitivities::row_here() {
 
 /// Slopes of the observables along the base's rates, by differences of fourth order.
 void ForwardSensitivities::find_slopes(double xi, std::span<const double> y) {
-  constexpr double k_longest = 1e-5;
-  constexpr double k_share = 1e-3;  // of the distance from the segment's beginning, where curves may be singular
+  // Curves may be singular where the segment ends, which is not known here, and where it begins. Both lengths are as
+  // small as round-off of the observables allows.
+  constexpr double k_longest = 2e-7;
+  constexpr double k_share = 0.03;  // of the distance from the segment's beginning
   const auto difference = [&](double length) {
     for (std::size_t k = 0; k < 2; ++k) {
       const double by = k == 0 ? -length : length;

@@ -30,11 +30,9 @@ constexpr double k_finest_atol = 1e-14;  // upper bound of atol of runs for diff
 
 // Step of the neighbours over the value of the key. It balances the error of the difference quotient next to a square
 // root, which grows with the square of the step, and the round-off of equations that are evaluated at one state.
-constexpr double k_share = 2e-5;
-// Error bound of an integrated derivative, over the run's rtol and the largest derivative of the column. The bound for
-// ida is larger, because its steps use a larger share of the tolerance.
-constexpr double k_forward_error = 30.0;
-constexpr double k_forward_error_of_ida = 100.0;
+constexpr double k_share = 1e-5;
+// Error bound of an integrated derivative, over the run's rtol and the largest derivative of the column.
+constexpr double k_forward_error = 90.0;
 constexpr double k_counts = 1e-6;  // round-off of a derivative that counts, over the largest one of its column
 
 [[nodiscard]] std::string quotient_unit(const std::string& unit, const std::string& by) {
@@ -112,19 +110,6 @@ constexpr double k_counts = 1e-6;  // round-off of a derivative that counts, ove
     if (size > 10.0 * round_off) result = std::max(result, round_off / size);
   }
   return result;
-}
-
-/// How many times larger the relative error of d(dissipation) is than that of d(work). The dissipation is the work less
-/// the stored energy: its absolute error is that of the work, and its derivative may be small.
-/// @param error  relative error of d(work); it hides derivatives that are not much larger
-[[nodiscard]] double magnification_of(const Table& history, const SensitivityKey& key, double error) {
-  const auto largest = [&](const char* energy) {
-    const auto column = history.find(derivative_column(energy, "J", key).name);
-    return column ? largest_of(history.row_count(), [&](std::size_t row) { return history.at(row, *column); }) : 0.0;
-  };
-  const double of_work = largest("work");
-  const double of_dissipation = largest("dissipation");
-  return of_dissipation > 10.0 * error * of_work ? std::max(1.0, of_work / of_dissipation) : 1.0;
 }
 
 /// Makes the scenes for a slightly smaller and a slightly larger value of each key.
@@ -316,12 +301,9 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
       record.history = without_round_off(record.history, largest);
       record.events = without_round_off(record.events, largest);
       run.record = std::move(record);
-      const double over_rtol = run.integrator.used == integrators::k_ida ? k_forward_error_of_ida : k_forward_error;
       for (const SensitivityKey& key : scenario.sensitivities) {
         const double step = step_of(key);
-        const double of_one = over_rtol * scenario.numerics.rtol;
-        const double error =
-            of_one * magnification_of(run.record.history, key, of_one) + round_off_of(run.record.history, key, step);
+        const double error = k_forward_error * scenario.numerics.rtol + round_off_of(run.record.history, key, step);
         run.sensitivities.push_back({key.key, key.value, step, error, true, "integrated with the run"});
       }
       return std::nullopt;

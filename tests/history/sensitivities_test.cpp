@@ -378,6 +378,46 @@ void expect_forward_as_direct(const std::string& text, const std::string& key, c
   }
 }
 
+/// Largest difference of a derivative in output rows of two runs, over the largest derivative.
+double difference_in_rows(const HistoryRun& one, const HistoryRun& other, const std::string& heading) {
+  const Table& history = one.record.history;
+  EXPECT_EQ(history.row_count(), other.record.history.row_count());
+  const std::vector<double> expected = column(other, heading);
+  const std::vector<double> actual = column(one, heading);
+  double difference = 0.0;
+  for (std::size_t row = 0; row < std::min(actual.size(), expected.size()); ++row) {
+    if (history.at(row, 2) != 0.0) continue;
+    EXPECT_TRUE(std::isfinite(actual[row])) << heading << ", row " << row;
+    difference = std::fmax(difference, std::abs(actual[row] - expected[row]));
+  }
+  return difference / largest(expected);
+}
+
+/// Expects integrated derivatives in output rows to be the differences of direct.
+void expect_rows_as_direct(const std::string& text, const std::string& key, const std::vector<std::string>& names) {
+  const HistoryRun direct = run_of(text);
+  for (const std::string& integrator : k_forward) {
+    const HistoryRun run = run_of(text, {integrator});
+    ASSERT_TRUE(run.sensitivities[0].is_forward) << run.sensitivities[0].why;
+    for (const std::string& name : names) {
+      const std::string heading = fmt::format("d({})/d({})", name, key);
+      EXPECT_LT(difference_in_rows(run, direct, heading), 1e-6) << integrator << ", " << heading;
+    }
+  }
+}
+
+// Unloading begins with an event 6e-6 of the step before an output row.
+TEST(Sensitivities, IntegratedAreAccurateJustAfterAnEvent) {
+  const std::string key = "material.surface_energy";
+  expect_rows_as_direct(scene_with_key("adhesion", key), key, {"volume", "dissipation", "axial.pressure"});
+}
+
+TEST(Sensitivities, IntegratedAreAccurateJustBeforeTheLossOfAContact) {
+  for (const char* key : {"particle.radius", "material.youngs_modulus"}) {
+    expect_rows_as_direct(scene_with_key("uniaxial", key), key, {"axial.contact_radius"});
+  }
+}
+
 TEST(Sensitivities, OfEventsAreThoseOfAFullHistoryIfNothingIsWrittenAfterTheStart) {
   for (const char* integrator : {"direct", "cvode-bdf", "ida"}) {
     const std::vector<std::string> with{fmt::format("numerics.integrator={}", integrator)};
