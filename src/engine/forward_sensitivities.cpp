@@ -59,7 +59,8 @@ struct ForwardSensitivities::Side {
   std::vector<double> y{}, rates{}, guards{};
   std::vector<double> begin_guards{};  ///< guards where the segment begins; nan if they have no values there
   std::optional<std::size_t> quadrature{};
-  std::optional<double> primitive_offset{};  ///< of the quadrature, if it has a closed form in the segment
+  std::optional<double> primitive_offset{};        ///< of the quadrature, if it has a closed form in the segment
+  std::vector<double> derivatives{}, round_off{};  ///< of the last row at an event
 
   Side(Scene made, double its_sign)
       : scene(std::move(made)),
@@ -478,11 +479,10 @@ void ForwardSensitivities::add_to_row(Number& number, double of_time, double bey
   }
 }
 
-/// Appends to the row the errors that round-off of the instant makes in the derivatives of a number. An observable that
-/// begins like a square root at an event is known there only to the square root of round-off.
-void ForwardSensitivities::add_round_off_to_row(Number& number) {
-  const std::size_t begin = row_.size();
-  row_.resize(begin + 1 + columns_.size(), 0.0);
+/// Finds the errors that round-off of the instant makes in the derivatives that a row has: d(time)/dp and those of the
+/// observables. An observable that begins like a square root at an event is known there only to the square root of
+/// round-off.
+void ForwardSensitivities::find_round_off(Number& number, std::span<double> round_off) {
   Side& side = number.sides[1];
   if (side.xi == 0.0 || side.xi == 1.0) return;  // the ends of a step are exact
   try {
@@ -494,13 +494,32 @@ void ForwardSensitivities::add_round_off_to_row(Number& number) {
       side.system().complete(side.xi + length, state_);
       side.system().observe(side.xi + length, state_, values_[0]);
       for (std::size_t c = 0; c < columns_.size(); ++c) {
-        double& round_off = row_[begin + 1 + c];
-        round_off = std::max(round_off, std::abs(values_[0][columns_[c]] - values_[1][columns_[c]]) / number.step);
+        const double error = std::abs(values_[0][columns_[c]] - values_[1][columns_[c]]) / number.step;
+        round_off[1 + c] = std::max(round_off[1 + c], error);
       }
     }
   } catch (const std::domain_error&) {
     return;  // the error is not known where the equations end
   }
+}
+
+/// Appends these errors to the row. A derivative that an event leaves as it is keeps its error: after pull-off, the
+/// displacement under force is the one at the end of the branch.
+void ForwardSensitivities::add_round_off_to_row(Number& number) {
+  const std::size_t width = 1 + columns_.size();
+  const std::size_t begin = row_.size();
+  row_.resize(begin + width, 0.0);
+  const std::span<double> round_off = std::span(row_).subspan(begin);
+  find_round_off(number, round_off);
+  const auto index = static_cast<std::size_t>(&number - numbers_.data());
+  const std::span<const double> derivatives = std::span(row_).subspan(index * width, width);
+  Side& side = number.sides[1];
+  for (std::size_t c = 0; c < side.derivatives.size(); ++c) {
+    const bool is_kept = derivatives[c] != 0.0 && derivatives[c] == side.derivatives[c];
+    if (is_kept) round_off[c] = std::max(round_off[c], side.round_off[c]);
+  }
+  side.derivatives.assign(derivatives.begin(), derivatives.end());
+  side.round_off.assign(round_off.begin(), round_off.end());
 }
 
 std::span<const double> ForwardSensitivities::row_here() {

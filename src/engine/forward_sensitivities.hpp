@@ -153,6 +153,7 @@ class ForwardSensitivities {
   void resume();
   void find_slopes(double xi, std::span<const double> y);
   void observe(Side& side);
+  void find_round_off(Number& number, std::span<double> round_off);
   void add_round_off_to_row(Number& number);
   void add_to_row(Number& number, double of_time, double beyond_slopes = 0.0);
 
