@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <boost/math/interpolators/pchip.hpp>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::mdr {
 namespace {
@@ -107,6 +109,15 @@ PressureRatio PressureCurve::at(double overlap_over_radius) const {
   const double t = overlap_over_radius - knots_[i];
   return {.value = piece.constant + t * (piece.linear + t * (piece.quadratic + t * piece.cubic)),
           .slope = piece.linear + t * (2.0 * piece.quadratic + t * 3.0 * piece.cubic)};
+}
+
+double PressureCurve::knot_beyond(double overlap_over_radius, double rate) const noexcept {
+  if (rate > 0.0) {
+    const auto knot = std::ranges::upper_bound(knots_, overlap_over_radius);
+    return knot == knots_.end() ? k_infinity : *knot;
+  }
+  const auto knot = std::ranges::lower_bound(knots_, overlap_over_radius);
+  return knot == knots_.begin() ? -k_infinity : *std::prev(knot);
 }
 
 PressureMoments PressureCurve::moments(double overlap_over_radius) const {

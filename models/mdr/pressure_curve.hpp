@@ -48,6 +48,11 @@ class PressureCurve {
 
   /// x of the last sample.
   [[nodiscard]] double end() const noexcept { return knots_.back(); }
+  /// First knot beyond x in the direction of a rate: where the second derivative of the curve jumps.
+  /// @param overlap_over_radius  x, any
+  /// @param rate                 of x, not 0
+  /// @return infinity, with the sign of the rate, if no knot lies there
+  [[nodiscard]] double knot_beyond(double overlap_over_radius, double rate) const noexcept;
   /// x of all samples.
   [[nodiscard]] std::span<const double> knots() const noexcept { return knots_; }
 

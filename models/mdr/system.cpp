@@ -198,6 +198,24 @@ void System::solve(double xi, std::span<double> y) {
   record_walls(now_.particle, xi, y);
 }
 
+/// Kinks are the samples of the pressure table that fully plastic contacts at their largest overlap pass.
+double System::next_kink(double after, double xi, std::span<const double> y) {
+  const PressureCurve* curve = setup_->law.material.pressure_curve.get();
+  if (curve == nullptr) return k_infinity;
+  Particle& p = now_.particle;
+  const Evaluation& at = p.evaluated(xi, y);
+  const Motion now = p.motion(p.mode.is_growing);
+  double first = k_infinity;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (p.branch(i).regime != Regime::fully_plastic || !p.branch(i).is_on_primary_branch) continue;
+    const double ratio = at.contacts[i].overlap / (1.0 + at.r);
+    const double rate = (inward_rate(p, i, now) + (1.0 - ratio) * now.growth) / (1.0 + at.r);
+    if (rate == 0.0) continue;
+    first = std::min(first, xi + (curve->knot_beyond(ratio + rate * (after - xi), rate) - ratio) / rate);
+  }
+  return first;
+}
+
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
   if (now_.particle.mode.is_growing) return std::nullopt;
   const double force_work = now_.particle.evaluated(xi, y).force_work;

@@ -35,6 +35,7 @@ class System final : public HybridSystem {
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override;
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override;
   void solve(double xi, std::span<double> y) override;
+  [[nodiscard]] double next_kink(double after, double xi, std::span<const double> y) override;
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override;
   [[nodiscard]] std::span<const Guard> guards() const noexcept override { return now_.guards.list(); }
   void guard_values(double xi, std::span<const double> y, std::span<double> values) override {

@@ -221,6 +221,14 @@ class HybridSystem {
   /// @return the new xi, nearer to `xi` than integrators resolve; `xi` itself if there is no such point
   virtual double leave_singularity(double xi, std::span<double> /*y*/) { return xi; }
 
+  /// Step coordinate of the first kink beyond `after`: a point where some derivative of the solution jumps although the
+  /// mode stays, such as a sample of an interpolated curve. The state y at xi is extrapolated to it with its rates, so
+  /// the result is exact if that state lies at the kink.
+  /// @return infinity if no kink lies ahead
+  [[nodiscard]] virtual double next_kink(double /*after*/, double /*xi*/, std::span<const double> /*y*/) {
+    return k_infinity;
+  }
+
   /// Primitive of the quadrature in the present mode, up to a constant; empty if it has no closed form.
   [[nodiscard]] virtual std::optional<double> closed_quadrature(double /*xi*/, std::span<const double> /*y*/) {
     return std::nullopt;

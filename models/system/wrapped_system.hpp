@@ -43,6 +43,7 @@ class WrappedSystem : public HybridSystem {
   [[nodiscard]] bool is_solvable_here() const noexcept override { return system_->is_solvable_here(); }
   void solve(double xi, State y) override { system_->solve(xi, y); }
   double leave_singularity(double xi, State y) override { return system_->leave_singularity(xi, y); }
+  [[nodiscard]] double next_kink(double after, double xi, View y) override { return system_->next_kink(after, xi, y); }
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
     return system_->closed_quadrature(xi, y);
   }

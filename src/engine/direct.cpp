@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -22,6 +23,8 @@ constexpr double k_tiny = 1e-10;
 constexpr double k_most_growth = 2.0;
 constexpr double k_most_shrinkage = 0.2;
 constexpr double k_safety = 0.85;
+// Growth of the planned length of pieces that end at kinks.
+constexpr double k_growth_at_kinks = 1.1;
 // Least tolerance of a piece's series, over the work.
 constexpr double k_round_off_of_work = 1e-16;
 // A step of at least so many rows takes their work from series, if its closed form is costly.
@@ -76,16 +79,24 @@ class Direct final : public EventLocator {
     double rest = k_rest;
     for (bool is_covered = false; !is_covered; rest = 0.0) {
       piece_end_ = 1.0 - begin_ <= (1.0 + rest) * length_ ? 1.0 : begin_ + length_;
-      const double tried = piece_length();
+      const double planned = length_;
+      double tried = piece_length();
       double factor = k_most_growth;
+      bool ends_at_kink = false;
       try {
+        if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
+        ends_at_kink = end_at_kink(rest);
+        tried = piece_length();
         is_covered = cover_piece(factor);
       } catch (const std::domain_error&) {
         // The equations end within the piece, or Newton's method left their domain although there is a solution.
         if (tried < least_progress(begin_) || (tried < k_tiny && ++refusals_ > k_most_refusals)) throw;
         factor = 0.5;
       }
-      length_ = std::min(longest(), factor * tried);
+      length_ = factor * tried;
+      // The length grows beyond the distances of kinks, to find out whether they are weak.
+      if (is_covered && ends_at_kink) length_ = std::max(length_, k_growth_at_kinks * planned);
+      length_ = std::min(longest(), length_);
     }
     statistics_.last_step = end_ - begin_;
     if (has_panels_) begin_panels();
@@ -171,6 +182,37 @@ class Direct final : public EventLocator {
     for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
   }
 
+  /// Ends the piece at the first kink in it, or up to a share `rest` beyond it: the series of the work then see smooth
+  /// rates. Kinks that lie close together for the length of the piece are taken to be weak; where they are not, refused
+  /// pieces become as short as their distances.
+  /// @return true if the piece ends at a kink
+  bool end_at_kink(double rest) {
+    // The last piece ended at kinks that are nearer than this share of the piece to its beginning.
+    constexpr double k_passed = 1e-3;
+    constexpr double k_close = 0.25;  // share of the piece up to which kinks lie close together
+    // The error of a kink's place after a correction by this share of the piece has no effect: the first correction is
+    // of the second order, and each further one squares the share.
+    constexpr double k_found = 1e-3;
+    constexpr int k_most_corrections = 4;
+    // With few nodes, the tolerance of the work is above the errors that kinks cause.
+    if (is_closed_ || nodes_ == &LegendreNodes::few()) return false;
+    const double limit = std::min(1.0, begin_ + (1.0 + rest) * piece_length());
+    double kink = system_.next_kink(begin_ + k_passed * piece_length(), begin_, begin_state_);
+    if (kink - begin_ < k_close * piece_length() || kink >= limit) return false;
+    double correction = 1.0;
+    for (int count = 0; correction > k_found && count < k_most_corrections && kink < limit; ++count) {
+      piece_end_ = kink;
+      for (std::size_t k = 0; k < trial_.size(); ++k)
+        trial_[k] = begin_state_[k] + (k < integrated_ ? begin_rates_[k] * piece_length() : 0.0);
+      ++statistics_.rhs_evaluations;
+      system_.solve(kink, trial_);
+      kink = system_.next_kink(std::midpoint(begin_, kink), kink, trial_);
+      correction = std::abs(kink - piece_end_) / piece_length();
+    }
+    piece_end_ = std::min(kink, limit);
+    return true;
+  }
+
   /// Solves for the state at the nodes of the piece, locates its event and integrates the work over it.
   /// @param factor  receives the ratio of the next piece's length, or of this one's at the next try, to the present
   ///   length; unchanged if nothing limits it
@@ -184,7 +226,6 @@ class Direct final : public EventLocator {
     constexpr double k_inside = 0.99;
     constexpr double k_just_beyond = 1.001;
     forget_samples();
-    if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
     if (begin_ == segment_begin_) sample_early();
     for (std::size_t j = 0; j < nodes_->count; ++j) {
       const double xi = node(j);

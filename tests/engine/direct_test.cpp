@@ -107,6 +107,39 @@ TEST(Direct, RefinesARootAndAKinkHoweverSmall) {
   }
 }
 
+TEST(Direct, EndsPiecesAtKinksThatTheSystemForetells) {
+  const std::vector<double> kinks{0.1234, 0.4321, 0.5555, 0.8};
+  std::vector<int> evaluations;
+  for (const bool are_foretold : {false, true}) {
+    auto toy = std::make_unique<ToySystem>();
+    toy->is_quadrature = true;
+    toy->rates_function = [&](double xi, View, std::span<double> dy) {
+      dy[0] = std::exp(xi);
+      for (const double kink : kinks) dy[0] += xi > kink ? (xi - kink) * (xi - kink) : 0.0;
+    };
+    if (are_foretold) toy->kinks = kinks;
+    const TestRun result = run_directly(std::move(toy));
+    double integral = std::exp(1.0) - 1.0;
+    for (const double kink : kinks) integral += std::pow(1.0 - kink, 3) / 3.0;
+    EXPECT_NEAR(result.last("y0"), integral, 1e-11) << are_foretold;
+    evaluations.push_back(toy_in(result.scene).rates_count);
+  }
+  EXPECT_LT(evaluations[1], 150);
+  EXPECT_LT(4 * evaluations[1], evaluations[0]);
+}
+
+TEST(Direct, IgnoresWeakKinksThatLieCloseTogether) {
+  std::vector<int> evaluations;
+  for (const bool are_foretold : {false, true}) {
+    auto toy = std::make_unique<ToySystem>();
+    toy->is_quadrature = true;
+    toy->rates_function = [](double xi, View, std::span<double> dy) { dy[0] = std::exp(xi); };
+    for (int k = 1; are_foretold && k < 1000; ++k) toy->kinks.push_back(1e-3 * k);
+    evaluations.push_back(toy_in(run_directly(std::move(toy)).scene).rates_count);
+  }
+  EXPECT_EQ(evaluations[1], evaluations[0]);
+}
+
 TEST(Direct, SparesManyRowsACostlyPrimitiveButNextToASingularity) {
   for (const int points : {10, 1000}) {
     auto toy = std::make_unique<ToySystem>();

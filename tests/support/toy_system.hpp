@@ -39,6 +39,7 @@ class ToySystem final : public HybridSystem {
   std::function<void(double start, View from, double xi, std::span<double> y)> flow =
       [](double start, View from, double xi, std::span<double> y) { y[0] = from[0] + xi - start; };
   std::function<double(double xi)> costly_primitive;  ///< primitive of y0, if it has one
+  std::vector<double> kinks;                          ///< step coordinates, ascending
   std::vector<ToyGuard> watched;
   bool is_quadrature = false;  ///< y0 is a quadrature: rates do not depend on it
   bool adheres = false;        ///< a force may pass through zero
@@ -91,6 +92,14 @@ class ToySystem final : public HybridSystem {
   void solve(double xi, std::span<double> y) override {
     see(xi);
     flow(mode_start_, mode_state_, xi, y);
+  }
+  /// The kinks as a law with a curved path would extrapolate them: with an error of the second order.
+  [[nodiscard]] double next_kink(double after, double xi, View) override {
+    for (const double kink : kinks) {
+      const double extrapolated = kink + 0.1 * (kink - xi) * (kink - xi);
+      if (extrapolated > after) return extrapolated;
+    }
+    return k_infinity;
   }
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, View) override {
     if (!costly_primitive) return std::nullopt;

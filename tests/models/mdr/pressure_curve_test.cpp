@@ -170,6 +170,17 @@ TEST(MdrPressureCurve, SaysWhereItEnds) {
   }
 }
 
+TEST(MdrPressureCurve, FindsTheNextKnotInEitherDirection) {
+  const PressureCurve curve = k_bumpy.curve();
+  EXPECT_EQ(curve.knot_beyond(0.05, 1.0), 0.1);
+  EXPECT_EQ(curve.knot_beyond(0.1, 2.0), 0.12);
+  EXPECT_EQ(curve.knot_beyond(0.05, -1.0), 0.01);
+  EXPECT_EQ(curve.knot_beyond(0.1, -1.0), 0.01);
+  EXPECT_EQ(curve.knot_beyond(-1.0, 1.0), 0.0);
+  EXPECT_EQ(curve.knot_beyond(0.5, 1.0), k_infinity);
+  EXPECT_EQ(curve.knot_beyond(0.0, -1.0), -k_infinity);
+}
+
 // --- in the contact laws
 
 TEST(MdrYieldWithTable, IsWhereTheElasticPressureMeetsTheCurve) {
