@@ -53,7 +53,7 @@ class Tangent {
   /// Solves for all right-hand sides. The pivots are those of M, because scaling by the roots of dF/dg makes the two
   /// matrices one. No pivot has to be searched for, and one that is not positive is beyond the limit.
   /// @return false beyond the limit
-  [[nodiscard]] bool eliminate(const Contacts& contacts, std::span<const double> stiffness) noexcept;
+  [[nodiscard]] bool eliminate(const Contacts& contacts, std::span<const double> stiffness);
   /// Displacement of the centre that cancels a net force to first order. Directions that no contact supports stay.
   /// @param stiffness  of contacts that have met the centre; may be larger than in eliminate()
   [[nodiscard]] Eigen::Vector3d step_to_balance(const Contacts& contacts, std::span<const double> stiffness,
@@ -63,11 +63,16 @@ class Tangent {
                    std::span<double> centre);
 
  private:
+  [[nodiscard]] bool eliminate_in_order(const Contacts& contacts, std::span<const double> stiffness) noexcept;
+  [[nodiscard]] bool eliminate_by_blocks(const Contacts& contacts, std::span<const double> stiffness);
   [[nodiscard]] double* row(std::size_t j) noexcept { return matrix_.data() + j * stride_; }
   [[nodiscard]] const double* row(std::size_t j) const noexcept { return matrix_.data() + j * stride_; }
 
   std::size_t stride_;
   std::vector<double> matrix_;  ///< a row per class: 1 - G dF/dg, approaches by the centre, right-hand side
+  // Work space of eliminate_by_blocks().
+  Eigen::MatrixXd symmetric_, solutions_;
+  Eigen::VectorXd roots_;
 };
 
 }  // namespace monograin::nonlocal

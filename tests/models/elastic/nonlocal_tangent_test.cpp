@@ -1,5 +1,6 @@
 #include "elastic/nonlocal_tangent.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <vector>
@@ -45,6 +46,64 @@ TEST(NonlocalTangent, SolvesTheLinearizedEquations) {
   ASSERT_TRUE(loaded.tangent.eliminate(loaded.contacts, loaded.stiffness));
   const Eigen::VectorXd expected = matrix.partialPivLu().solve(right);
   for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(loaded.tangent.approach(j), expected[as_index(j)], 1e-16);
+}
+
+/// Classes of one wall and of two that a half turn exchanges, as many as Eigen's blocked method takes.
+std::vector<ContactClass> many_classes() {
+  std::vector<ContactClass> classes{{"top", {Eigen::Vector3d::UnitZ()}, 0.0},
+                                    {"bottom", {-Eigen::Vector3d::UnitZ()}, 0.0}};
+  constexpr int k_pairs = 58;
+  for (int i = 0; i < k_pairs; ++i) {
+    const double z = 0.9 - 1.8 * i / k_pairs;
+    const double across = std::sqrt(1.0 - z * z);
+    const Eigen::Vector3d normal(across * std::cos(1.2 * i), across * std::sin(1.2 * i), z);
+    classes.push_back({"pair", {normal, {-normal.x(), -normal.y(), z}}, 0.0});
+  }
+  return classes;
+}
+
+TEST(NonlocalTangent, SolvesTheEquationsOfManyClasses) {
+  const Contacts contacts({k_rubber}, many_classes(), Centre::free);
+  const Eigen::Index n = as_index(contacts.class_count());
+  Tangent tangent(contacts);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n, n);
+  Eigen::VectorXd right(n);
+  std::vector<double> stiffness;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    stiffness.push_back(j % 5 == 3 ? 0.0 : 0.01 + 1e-4 * static_cast<double>(j));
+    matrix.col(j) -= contacts.coupling().col(j) * stiffness.back();
+    right[j] = 0.01 * std::sin(static_cast<double>(j));
+    tangent.approach(static_cast<std::size_t>(j)) = right[j];
+  }
+  ASSERT_TRUE(tangent.eliminate(contacts, stiffness));
+  const auto factors = matrix.partialPivLu();
+  const Eigen::VectorXd expected = factors.solve(right);
+  for (Eigen::Index j = 0; j < n; ++j)
+    EXPECT_NEAR(tangent.approach(static_cast<std::size_t>(j)), expected[j], 1e-15) << j;
+
+  // The centre is free along the axis of the half turn.
+  ASSERT_EQ(contacts.free_count(), 1U);
+  Eigen::VectorXd arms(n);
+  for (Eigen::Index j = 0; j < n; ++j) arms[j] = contacts.arm(static_cast<std::size_t>(j)).x();
+  const Eigen::VectorXd moved = factors.solve(arms);
+  double hold = 0.0;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    hold += contacts.weight(i) * stiffness[i] * arms[j] * moved[j];
+  }
+  const Eigen::Vector3d step = tangent.step_to_balance(contacts, stiffness, {0.1, 0.0, 0.0});
+  EXPECT_NEAR(step.x(), -0.1 / hold, 1e-13 * std::abs(0.1 / hold));
+}
+
+TEST(NonlocalTangent, EndsWhereTheMarginOfManyClassesDoes) {
+  Contacts contacts({k_rubber}, many_classes(), Centre::fixed);
+  Tangent tangent(contacts);
+  // M of equal stiffnesses k has the margin 1 - k times the largest eigenvalue of G.
+  const double limit = 1.0 / contacts.coupling().eigenvalues().real().maxCoeff();
+  const auto equal = [&](double stiffness) { return std::vector(contacts.class_count(), stiffness); };
+  EXPECT_TRUE(tangent.eliminate(contacts, equal(limit * (1.0 - 1e-9))));
+  EXPECT_FALSE(tangent.eliminate(contacts, equal(limit * (1.0 + 1e-9))));
+  EXPECT_FALSE(tangent.eliminate(contacts, equal(k_nan)));
 }
 
 TEST(NonlocalTangent, EndsWhereTheMarginDoes) {
