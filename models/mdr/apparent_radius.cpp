@@ -50,13 +50,10 @@ std::vector<CapPair> cap_pairs_of(std::span<const ContactClass> classes) {
   return pairs;
 }
 
-double cap_guard(const CapPair& pair, double first_overlap, double second_overlap, double r) noexcept {
-  // A cap of overlap d covers an angle a on either side of its normal with sin(a/2)^2 = d/(2 R). Caps meet where their
-  // angles add up to that between the normals. Half angles are compared by their sines: cosines would lose digits.
-  const double scale = 0.5 / (1.0 + r);
-  const double first = std::clamp(first_overlap * scale, 0.0, 1.0);
-  const double second = std::clamp(second_overlap * scale, 0.0, 1.0);
-  return std::sqrt(first * (1.0 - second)) + std::sqrt(second * (1.0 - first)) - pair.half_sine;
+CapAngle cap_angle(double overlap, double r) noexcept {
+  // A cap of overlap d covers an angle a on either side of its normal with sin(a/2)^2 = d/(2 R).
+  const double square = std::clamp(overlap * 0.5 / (1.0 + r), 0.0, 1.0);
+  return {std::sqrt(square), std::sqrt(1.0 - square)};
 }
 
 }  // namespace monograin::mdr

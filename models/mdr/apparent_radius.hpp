@@ -149,7 +149,16 @@ struct CapPair {
 };
 /// All pairs of walls whose caps may meet. Caps on opposite sides meet only where the particle is squeezed to nothing.
 [[nodiscard]] std::vector<CapPair> cap_pairs_of(std::span<const ContactClass> classes);
-/// Guard: >= 0 where the caps of two contacts intersect.
-[[nodiscard]] double cap_guard(const CapPair& pair, double first_overlap, double second_overlap, double r) noexcept;
+/// Half the angle that the cap of a contact covers on either side of its normal.
+struct CapAngle {
+  double sine = 0.0;
+  double cosine = 1.0;
+};
+[[nodiscard]] CapAngle cap_angle(double overlap, double r) noexcept;
+/// Guard: >= 0 where the caps of two contacts intersect. Caps meet where their angles add up to that between the
+/// normals. Half angles are compared by their sines: cosines would lose digits.
+[[nodiscard]] inline double cap_guard(const CapPair& pair, const CapAngle& first, const CapAngle& second) noexcept {
+  return first.sine * second.cosine + second.sine * first.cosine - pair.half_sine;
+}
 
 }  // namespace monograin::mdr

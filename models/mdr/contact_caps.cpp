@@ -9,12 +9,6 @@ namespace {
 // Distance (of the guard from zero) from which on caps that have met have parted.
 constexpr double k_parted = 1e-6;
 
-/// Overlap of a contact's cap. An idle contact has none; a round-off overlap of 1e-12 R0 would give one 1e-6 R0 wide.
-double cap_overlap(const Particle& p, int contact_class) {
-  const auto i = static_cast<std::size_t>(contact_class);
-  return is_idle(p, i) ? 0.0 : p.contact(i).overlap;
-}
-
 }  // namespace
 
 bool ContactCaps::both_touch(const Particle& p, std::size_t pair) const noexcept {
@@ -22,9 +16,12 @@ bool ContactCaps::both_touch(const Particle& p, std::size_t pair) const noexcept
          p.branch(static_cast<std::size_t>(pairs_[pair].second)).touches();
 }
 
-double ContactCaps::guard(const Particle& p, std::size_t pair) const {
-  const CapPair& caps = pairs_[pair];
-  return cap_guard(caps, cap_overlap(p, caps.first), cap_overlap(p, caps.second), p.at().r);
+void ContactCaps::set_angles(const Particle& p) {
+  if (pairs_.empty()) return;
+  for (std::size_t i = 0; i < angles_.size(); ++i) {
+    // An idle contact has no cap; a round-off overlap of 1e-12 R0 would give one 1e-6 R0 wide.
+    angles_[i] = cap_angle(is_idle(p, i) ? 0.0 : p.contact(i).overlap, p.at().r);
+  }
 }
 
 std::optional<DomainEnd> ContactCaps::meet(std::size_t pair, double r, std::vector<Event>& log) {
@@ -39,8 +36,9 @@ std::optional<DomainEnd> ContactCaps::meet(std::size_t pair, double r, std::vect
 
 std::optional<DomainEnd> ContactCaps::meet_at_once(const Particle& p, std::vector<Event>& log) {
   std::optional<DomainEnd> end;
+  set_angles(p);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const double distance = both_touch(p, k) ? guard(p, k) : -1.0;
+    const double distance = both_touch(p, k) ? guard(k) : -1.0;
     if (distance < -k_parted) pairs_[k].have_met = false;
     if (distance < -k_zero_guard || pairs_[k].have_met) continue;
     if (const auto limit = meet(k, p.at().r, log)) end = limit;

@@ -13,7 +13,9 @@ namespace monograin::mdr {
 class ContactCaps {
  public:
   explicit ContactCaps(const Setup& setup)
-      : pairs_(cap_pairs_of(setup.classes)), stops_(setup.settings.stops_at_cap_intersection) {}
+      : pairs_(cap_pairs_of(setup.classes)),
+        angles_(setup.classes.size()),
+        stops_(setup.settings.stops_at_cap_intersection) {}
 
   /// Before the first step: no caps have met.
   void start() noexcept {
@@ -22,8 +24,14 @@ class ContactCaps {
   }
   [[nodiscard]] std::span<const CapPair> pairs() const noexcept { return pairs_; }
   [[nodiscard]] bool both_touch(const Particle& p, std::size_t pair) const noexcept;
-  /// Guard: >= 0 where the caps of a pair intersect.
-  [[nodiscard]] double guard(const Particle& p, std::size_t pair) const;
+  /// Finds the angles of all caps at the state that the particle has evaluated last, for guard().
+  void set_angles(const Particle& p);
+  /// Guard, at the last set_angles(): >= 0 where the caps of a pair intersect.
+  [[nodiscard]] double guard(std::size_t pair) const noexcept {
+    const CapPair& caps = pairs_[pair];
+    return cap_guard(caps, angles_[static_cast<std::size_t>(caps.first)],
+                     angles_[static_cast<std::size_t>(caps.second)]);
+  }
 
   /// Records and logs that the caps of a pair have met.
   /// @return the reason to stop, if the settings say so
@@ -38,6 +46,7 @@ class ContactCaps {
 
  private:
   std::vector<CapPair> pairs_;
+  std::vector<CapAngle> angles_;  ///< a class each
   bool stops_ = false;
   std::optional<double> first_radius_;
 };

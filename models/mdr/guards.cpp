@@ -79,7 +79,7 @@ double edge_round_off(const Particle& p, std::size_t i) {
   return k_same_overlap + profile_round_off(at.indenter, p.branch(i).edge.radius) / at.by_overlap;
 }
 
-void GuardSet::arm(Particle& p, const ContactCaps& caps, double xi, std::span<const double> y) {
+void GuardSet::arm(Particle& p, ContactCaps& caps, double xi, std::span<const double> y) {
   list_.clear();
   p.evaluated(xi, y);
   const Motion now = p.motion(p.mode.is_growing);
@@ -91,10 +91,13 @@ void GuardSet::arm(Particle& p, const ContactCaps& caps, double xi, std::span<co
     list_.push_back({.kind = k_softened, .index = -1, .direction = -1, .name = "limit", .is_branch_end = true});
   }
   arm_growth(p, now);
+  caps.set_angles(p);
+  watches_caps_ = false;
   for (std::size_t k = 0; k < caps.pairs().size(); ++k) {
     // Caps that have just met may be a round-off short of zero, and would meet again at once.
-    if (!caps.pairs()[k].have_met && caps.both_touch(p, k) && caps.guard(p, k) < -k_zero_guard) {
+    if (!caps.pairs()[k].have_met && caps.both_touch(p, k) && caps.guard(k) < -k_zero_guard) {
       list_.push_back({k_caps, static_cast<int>(k), 1, "caps-intersect"});
+      watches_caps_ = true;
     }
   }
   if (p.law().material.bulk_compliance > 0.0) list_.push_back({k_volume, -1, -1, "volume-limit"});
@@ -281,7 +284,7 @@ double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, dou
     case k_volume:
       return 1.0 - 4.0 * p.at().volume.relative_compression - k_least_volume;
     case k_caps:
-      return caps.guard(p, i);
+      return caps.guard(i);
     case k_centre_reached:
       return 1.0 - p.contact(i).displacement - k_least_distance;
     case k_retreat:
@@ -307,10 +310,11 @@ double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, dou
 
 }  // namespace
 
-void GuardSet::values(Particle& p, const ContactCaps& caps, double xi, std::span<const double> y,
+void GuardSet::values(Particle& p, ContactCaps& caps, double xi, std::span<const double> y,
                       std::span<double> values) const {
   p.evaluated(xi, y);
   const Motion now = p.motion(p.mode.is_growing);
+  if (watches_caps_) caps.set_angles(p);
   for (std::size_t g = 0; g < list_.size(); ++g) values[g] = guard_value(p, caps, list_[g], xi, y, now);
 }
 

@@ -73,10 +73,9 @@ inline constexpr double k_least_distance = 1e-3;
 /// Set of the guards that are alive until the next transition or the end of the step.
 class GuardSet {
  public:
-  void arm(Particle& p, const ContactCaps& caps, double xi, std::span<const double> y);
+  void arm(Particle& p, ContactCaps& caps, double xi, std::span<const double> y);
   [[nodiscard]] std::span<const Guard> list() const noexcept { return list_; }
-  void values(Particle& p, const ContactCaps& caps, double xi, std::span<const double> y,
-              std::span<double> values) const;
+  void values(Particle& p, ContactCaps& caps, double xi, std::span<const double> y, std::span<double> values) const;
 
  private:
   /// Possible changes of a contact's overlap until the step ends.
@@ -98,6 +97,7 @@ class GuardSet {
   void arm_growth(const Particle& p, const Motion& now);
 
   std::vector<Guard> list_;
+  bool watches_caps_ = false;  ///< the list has guards of caps
 };
 
 }  // namespace monograin::mdr

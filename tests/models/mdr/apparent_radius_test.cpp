@@ -140,10 +140,15 @@ TEST(MdrCaps, MeetWhereTheirAnglesAddUpToThatBetweenTheNormals) {
     return 2.0 * (1.0 + r) * std::pow(std::sin(0.5 * half_angle), 2);
   };
   for (const double r : {0.0, 0.05}) {
-    EXPECT_NEAR(cap_guard(pairs[0], overlap_of(quarter, r), overlap_of(quarter, r), r), 0.0, 1e-15);
-    EXPECT_NEAR(cap_guard(pairs[0], overlap_of(0.5 * quarter, r), overlap_of(1.5 * quarter, r), r), 0.0, 1e-15);
-    EXPECT_LT(cap_guard(pairs[0], overlap_of(0.9 * quarter, r), overlap_of(quarter, r), r), 0.0);
-    EXPECT_GT(cap_guard(pairs[0], overlap_of(1.1 * quarter, r), overlap_of(quarter, r), r), 0.0);
+    EXPECT_NEAR(cap_guard(pairs[0], cap_angle(overlap_of(quarter, r), r), cap_angle(overlap_of(quarter, r), r)), 0.0,
+                1e-15);
+    EXPECT_NEAR(
+        cap_guard(pairs[0], cap_angle(overlap_of(0.5 * quarter, r), r), cap_angle(overlap_of(1.5 * quarter, r), r)),
+        0.0, 1e-15);
+    EXPECT_LT(cap_guard(pairs[0], cap_angle(overlap_of(0.9 * quarter, r), r), cap_angle(overlap_of(quarter, r), r)),
+              0.0);
+    EXPECT_GT(cap_guard(pairs[0], cap_angle(overlap_of(1.1 * quarter, r), r), cap_angle(overlap_of(quarter, r), r)),
+              0.0);
   }
 }
 
