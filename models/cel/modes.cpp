@@ -18,8 +18,6 @@ constexpr double k_at_yield = 1e-9;
 constexpr double k_least_rate = 1e-13;
 /// Relative difference of the rates of dents that is round-off.
 constexpr double k_alike = 1e-6;
-/// Margin to a fold (Motion::margin()) at which a run ends: the stiffness is infinite at the fold.
-constexpr double k_least_margin = 1e-5;
 /// Largest coverage to which the law is fitted: half the contact area over pi R0^2, which is 2 for the whole surface.
 constexpr double k_most_coverage = 1.7;
 
@@ -99,7 +97,7 @@ double value_of(const Guard& guard, const Particle& p, const Motion& motion, dou
     case k_reversal:
       return dent_rate / (std::abs(dent_rate) + std::abs(c.drive.rate()) + p.depth());
     case k_fold:
-      return motion.margin() - k_least_margin;
+      return motion.margin() - k_margin_of_fold;
     case k_away:
       return p.centre.room(xi, p.position());
     default:

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/hybrid_system.hpp"
+
 namespace monograin::cel {
 namespace {
 
-/// Rate, per step coordinate, at which an integrated state is drawn back to the equations. Next to the beginning of
-/// flow, where contacts may be very shallow, the rate is k_first_pull over the distance from there: times the length of
-/// a first step it is below one, so that correctors converge. k_nearest_flow keeps the rate smooth for the shortest
-/// steps.
-constexpr double k_pull = 20.0;
-constexpr double k_first_pull = 0.5;
+/// Next to the beginning of flow, an overlap may be near the resolution. The rate of stabilization is there
+/// k_first_stabilization over the distance from the beginning. Times the length of a first step it is below one, so
+/// that correctors converge. k_nearest_flow bounds the rate in the shortest steps.
+constexpr double k_first_stabilization = 0.5;
 constexpr double k_nearest_flow = 1e-9;
 
 /// Speed of the walls that touch, over the sum of that and the speed of their contacts: 0 at a fold. Where a force
@@ -44,7 +44,8 @@ double Motion::evaluate(Particle& p, double xi, std::span<const double> y) {
         -p.centre.net_force_rate().head(p.layout().directions);
   p.residual(xi, {right_.col(1).data(), size});
   const double since = xi - flow_begin_;
-  right_.col(1) *= -(since > 0.0 ? std::max(k_pull, k_first_pull / (since + k_nearest_flow)) : k_pull);
+  right_.col(1) *=
+      -(since > 0.0 ? std::max(k_stabilization, k_first_stabilization / (since + k_nearest_flow)) : k_stabilization);
   const double sign = tangent_.solve(right_, solutions_);
 
   rates_.assign(solutions_.data(), solutions_.data() + size);

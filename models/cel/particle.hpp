@@ -84,8 +84,8 @@ struct ClassState {
 
 class Particle {
  public:
-  /// Elastic displacement, over the program's depth, that is round-off; more than the tolerance of a located guard.
-  static constexpr double k_touch = 4e-13;
+  /// Elastic displacement, over the program's depth, that is round-off; more than the error of a located guard.
+  static constexpr double k_touch = 4.0 * k_zero_guard;
 
   /// @param depth  largest displacement of the program
   Particle(const Material& material, double poisson_ratio, std::span<const ContactClass> walls, bool centre_is_free,

@@ -15,8 +15,6 @@ using std::string_view;
 enum RegimeWord { k_open, k_elastic, k_plastic, k_unloaded };
 constexpr std::array<string_view, 4> k_regime_words{"open", "elastic", "plastic", "unloaded"};
 
-/// Margin to a fold below which the equations are hard to integrate.
-constexpr double k_hard_margin = 1e-3;
 /// Fitted range of the law.
 constexpr double k_least_modulus_over_yield = 6.25;
 constexpr double k_deepest = 0.5;

@@ -28,11 +28,6 @@ constexpr std::array k_unknowns{
 constexpr double k_usual_gain = 10.0;
 constexpr double k_most_gain = 1e3;
 
-// Stiffness along the flow, over its usual size, below which integrators may fail: round-off of the stress is larger in
-// the plastic strain by its reciprocal.
-constexpr double k_hardly_unique = 1e-3;
-// Bulk modulus over the yield pressure from which on integrators may fail.
-constexpr double k_stiff = 1e5;
 // Share of the strength below which a negative work or dissipation of the flow is round-off.
 constexpr double k_negligible_work = 1e-9;
 
@@ -319,9 +314,9 @@ void MaterialPoint::observe(double xi, std::span<const double> y, std::span<doub
 
 std::optional<Difficulty> MaterialPoint::difficulty(double xi, std::span<const double> y) {
   const Response now = response(xi, y);
-  if (phase_.is_plastic && distance_to(Limit::loss_of_uniqueness, phase_, now).margin < k_hardly_unique)
+  if (phase_.is_plastic && distance_to(Limit::loss_of_uniqueness, phase_, now).margin < k_hard_margin)
     return Difficulty::hardly_unique;
-  if (now.at.bulk_modulus.value < k_stiff * now.at.yield_pressure.value) return std::nullopt;
+  if (now.at.bulk_modulus.value < k_stiff_modulus * now.at.yield_pressure.value) return std::nullopt;
   return Difficulty::stiff_material;
 }
 

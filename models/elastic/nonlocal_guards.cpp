@@ -10,10 +10,6 @@
 namespace monograin::nonlocal {
 namespace {
 
-// Margin at which a run ends. It goes like the root of the distance from the limit: a run ends 1e-10 R0 before the
-// limit.
-constexpr double k_least_margin = 1e-5;
-
 int as_int(std::size_t index) noexcept { return static_cast<int>(index); }
 
 /// Angles at which walls of two classes may meet on the surface, each listed once.
@@ -40,8 +36,8 @@ double limit_value(Particle& p, const Guard& guard, double xi) {
                                     : scales.widest - contact.contact_radius;
   }
   if (guard.kind == k_centre) return 1.0 - p.depth(guard.place(), xi);
-  // Vanishes where the margin is k_least_margin, in whatever order the walls are eliminated.
-  return p.contacts().least_pivot(p.state(), k_least_margin);
+  // Vanishes where the margin is k_margin_of_fold, in whatever order the walls are eliminated.
+  return p.contacts().least_pivot(p.state(), k_margin_of_fold);
 }
 
 }  // namespace

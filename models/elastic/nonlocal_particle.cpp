@@ -7,16 +7,11 @@
 #include "contacts/centre/obstacles.hpp"
 #include "contacts/side_ahead.hpp"
 #include "elastic/nonlocal_evasion.hpp"
+#include "system/hybrid_system.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
-
-// Margin below which an integrator may find no further steps.
-constexpr double k_hard_margin = 1e-3;
-// Rate at which an integrated state is drawn back to the equations, per step of the program. Without it an accumulated
-// error would grow with 1/margin towards the limit of applicability.
-constexpr double k_pull = 20.0;
 
 /// Signed square of a force-controlled class from its unknown.
 double square_of(double power) { return std::pow(std::max(power, 0.0), 1.0 / k_force_power); }
@@ -201,9 +196,9 @@ void Particle::rates(double xi, std::span<const double> y, std::span<double> dy)
   evaluate_contacts(xi, y);
   for (std::size_t i = 0; i < size(); ++i) {
     drawn_ramps_[i] = ramps_[i];
-    if (!is_force_controlled(i)) drawn_ramps_[i].end += k_pull * (prescribed(i, xi) - now_[i].displacement);
+    if (!is_force_controlled(i)) drawn_ramps_[i].end += k_stabilization * (prescribed(i, xi) - now_[i].displacement);
   }
-  const Tolerances tolerances{.touch = scales_.touch, .pull = k_pull, .touches = mode.touches};
+  const Tolerances tolerances{.touch = scales_.touch, .pull = k_stabilization, .touches = mode.touches};
   or_pull_that_follows(xi, [&] { motion_.find(contacts_, drawn_ramps_, state_, rates_, tolerances); });
   std::ranges::copy(rates_, dy.begin());
   double power = 0.0;

@@ -5,15 +5,14 @@
 #include <cmath>
 
 #include "elastic/nonlocal_evasion.hpp"
+#include "system/hybrid_system.hpp"
 #include "system/limit.hpp"
 
 namespace monograin::nonlocal {
 namespace {
 
 // Decay rate of a balance error where a prescribed force shrinks, over the relative rate of that force.
-constexpr double k_hurry = 2.0;
-// Rate at which idle walls close gaps that are integration errors, per step of the program.
-constexpr double k_closing = 20.0;
+constexpr double k_decay_over_force_rate = 2.0;
 
 /// Largest rate at which an idle wall closes a gap that is an integration error. From `touch` to twice that gap the
 /// bound grows to infinity, and beyond, the wall is free. A bound that ended abruptly would separate an implicit step
@@ -21,7 +20,7 @@ constexpr double k_closing = 20.0;
 double closing(double signed_square, double touch) {
   const double gap = -signed_square;
   const double share = gap <= touch ? 1.0 : std::max(0.0, 2.0 - gap / touch);
-  return k_closing * gap / share;
+  return k_stabilization * gap / share;
 }
 
 /// Decay rate of the error of error_against_forces(), at least `least`. Where a force shrinks, an error of the balance
@@ -30,7 +29,7 @@ double error_decay(std::span<const Ramp> ramps, std::span<const double> forces, 
   double decay = least;
   for (std::size_t j = 0; j < ramps.size(); ++j) {
     const bool is_borne = ramps[j].is_force_controlled() && forces[j] > 0.0;
-    if (is_borne) decay = std::max(decay, -k_hurry * ramps[j].rate() / forces[j]);
+    if (is_borne) decay = std::max(decay, -k_decay_over_force_rate * ramps[j].rate() / forces[j]);
   }
   return decay;
 }

@@ -1,15 +1,18 @@
 #include "system/difficulty.hpp"
 
+#include "system/number_text.hpp"
+#include "system/resolution.hpp"
+
 namespace monograin {
 
-std::string_view advice(Difficulty difficulty) noexcept {
+std::string advice(Difficulty difficulty) {
   switch (difficulty) {
     case Difficulty::below_resolution:
-      return "the program closes no contact by more than 1e-12 of the particle's radius, which is round-off; expected "
-             "a deeper one, or integrator = \"direct\"";
+      return "the program closes no contact by more than " + number_text(k_resolution) +
+             " of the particle's radius, which is round-off; expected a deeper one, or integrator = \"direct\"";
     case Difficulty::stiff_material:
-      return "the bulk modulus is above 1e5 yield pressures, and stresses are lost in the round-off of strains; "
-             "expected integrator = \"cvode-bdf\"";
+      return "the bulk modulus is above " + number_text(k_stiff_modulus) +
+             " yield pressures, and stresses are lost in the round-off of strains; expected integrator = \"cvode-bdf\"";
     case Difficulty::hardly_unique:
       return "the program hardly determines the plastic strain, which shows round-off; expected integrator "
              "= \"cvode-bdf\"";

@@ -1,7 +1,7 @@
 /// Causes that make the equations of a model hard to integrate.
 #pragma once
 
-#include <string_view>
+#include <string>
 
 namespace monograin {
 
@@ -15,7 +15,13 @@ enum class Difficulty {
   soft_centre                ///< the tangent stiffness of the free centre nearly vanishes
 };
 
+/// Margin to a limit of the equations, 1 far from it and 0 at it, below which integrators may fail: errors grow with
+/// its reciprocal.
+inline constexpr double k_hard_margin = 1e-3;
+/// Bulk modulus over the yield pressure from which on integrators may fail.
+inline constexpr double k_stiff_modulus = 1e5;
+
 /// The message for a difficulty: the cause, and what the user can do. No full stop at the end.
-[[nodiscard]] std::string_view advice(Difficulty difficulty) noexcept;
+[[nodiscard]] std::string advice(Difficulty difficulty);
 
 }  // namespace monograin

@@ -47,6 +47,10 @@ struct Unknown {
   double sum_scale = 0.0;  ///< magnitude of sums that contain it: their round-off bounds its absolute tolerance below
 };
 
+/// Rate, per step of the program, at which rates() draw an integrated state back to the equations (stabilization of the
+/// constraints). Without it, accumulated errors would grow with the reciprocal of the margin towards a fold.
+inline constexpr double k_stabilization = 20.0;
+
 /// A guard: a root function, scaled to order one, that is alive in the present mode.
 struct Guard {
   int kind = 0;           ///< code of the guard, private to the system

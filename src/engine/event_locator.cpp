@@ -14,8 +14,6 @@
 namespace monograin {
 namespace {
 
-// Between evaluations nearer to each other than this (step coordinates), guards are not searched for two crossings.
-constexpr double k_smallest_hidden = 1e-6;
 // A guard counts as zero at its root below k_round_off_of_guard times the larger of its values at the bracket's ends,
 // and below k_most_of_guard times the smaller one.
 constexpr double k_round_off_of_guard = 1e-14;
@@ -113,7 +111,7 @@ bool EventLocator::any_crosses(const View& before, const View& after) const {
 double EventLocator::hidden_extremum(std::size_t place) const {
   const View a = sample(place);
   const View b = sample(place + 1);
-  if (b.xi - a.xi < k_smallest_hidden || samples_.empty()) return b.xi;
+  if (b.xi - a.xi < k_shortest_sampled || samples_.empty()) return b.xi;
   struct Third {
     View view;
     double per_b = 0.0;  ///< 1 / (signed distance from b); per_a: from a

@@ -23,7 +23,8 @@ class EventLocator : public Integrator {
   /// @param samples  expected evaluations of the guards inside a piece; memory for them is reserved
   EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t samples = 0);
 
-  /// Pieces shorter than this (step coordinates) have no evaluations inside: guards near zero are round-off there.
+  /// Pieces shorter than this (step coordinates) have no evaluations inside, and are not searched for two crossings:
+  /// guards near zero are round-off there.
   static constexpr double k_shortest_sampled = 1e-6;
 
   /// Starts a segment at xi: stores the state, evaluates the guards and finds which side of zero each one is on.

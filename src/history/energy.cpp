@@ -6,13 +6,12 @@
 #include <cmath>
 #include <vector>
 
+#include "scenario/integrators.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
 
-// Bound of the global error of an integration with error control, over its rtol.
-constexpr double k_error_over_rtol = 100.0;
 // Bound of the round-off of an overlap over R0: an overlap is a difference of a few lengths of the order of R0.
 constexpr double k_overlap_round_off = 16.0 * k_epsilon;
 
@@ -55,7 +54,7 @@ std::optional<std::string> energy_warning(const Table& history, double radius, c
   const std::string where =
       fmt::format("dissipation falls by {:.3g} J, {:.2g} of the largest energy, from t = {:.9g} s to t = {:.9g} s",
                   fall->amount, fall->share(), fall->from, fall->to);
-  if (fall->share() <= k_error_over_rtol * rtol) {
+  if (fall->share() <= integrators::k_error_over_rtol * rtol) {
     return fmt::format("{}: the integration may be off by as much at rtol = {:g}", where, rtol);
   }
   return fmt::format("the law creates energy: {}; 'monograin models {}' says where it may", where, model);

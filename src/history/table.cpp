@@ -30,8 +30,7 @@ constexpr std::size_t k_most_cells = 100'000'000;
 // --- writing
 
 [[nodiscard]] bool prints_as_integer(double value) noexcept {
-  constexpr double k_largest = 1e15;  // larger integers are written with an exponent
-  return std::abs(value) < k_largest && value == std::trunc(value) && !(value == 0.0 && std::signbit(value));
+  return std::abs(value) < k_end_of_integers && value == std::trunc(value) && !(value == 0.0 && std::signbit(value));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ namespace {
 
 using Method = odeint::rosenbrock4<double>;
 
+// Safety factor and largest growth of a step, as in the library.
 constexpr double k_safety = 0.9;
 constexpr double k_most_growth = 5.0;
 

@@ -49,5 +49,10 @@ inline constexpr const char* k_former_forward_euler = "explicit";
 
 inline constexpr double k_default_rtol = 1e-8;
 inline constexpr double k_default_atol = 1e-12;  ///< relative to each unknown's own scale
+/// Bound of the global error of an integration with error control, over its rtol (docs/performance.md).
+inline constexpr double k_error_over_rtol = 100.0;
+/// Bound of the difference of two results of the direct form, over the largest values: each state is polished to 1e-12
+/// of them, and the work is a sum of quadratures.
+inline constexpr double k_direct_tolerance = 1e-10;
 
 }  // namespace monograin::integrators

@@ -129,8 +129,7 @@ class Override {
 
   /// A table with a number as its only entry. A whole number becomes an integer, as it would from a text.
   static toml::table holder_of(double number) {
-    constexpr double k_largest_integer = 1e15;
-    const bool is_integer = std::trunc(number) == number && std::abs(number) < k_largest_integer;
+    const bool is_integer = std::trunc(number) == number && std::abs(number) < k_end_of_integers;
     toml::table holder;
     if (is_integer) {
       holder.insert("x", static_cast<std::int64_t>(number));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,7 @@
 namespace monograin {
 namespace {
 
-constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();  // only a run shows it
+constexpr double k_unknown = k_nan;  // only a run shows it
 
 constexpr std::string_view k_together = "steps end together";
 

@@ -8,6 +8,9 @@
 
 namespace monograin {
 
+/// Magnitude from which on a whole number is written with an exponent; its text then is no integer.
+inline constexpr double k_end_of_integers = 1e15;
+
 /// The candidate nearest to `word`, if it takes at most two insertions, deletions, replacements or swaps of neighbours
 /// and fewer than the word has letters; otherwise an empty view. Capital and small letters count as equal.
 [[nodiscard]] std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates);

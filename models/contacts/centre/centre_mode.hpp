@@ -51,8 +51,8 @@ class CentreMode {
       return c.touches() ? d : std::min(d + carried(i, y), opening);
     }
     const double overlap = d + carried(i, y) - opening;
-    const bool only_touches = c.touches() && std::abs(overlap) <= FreeCentre::k_bearing_overlap;
-    return only_touches ? opening : opening + overlap;
+    const bool is_idle = c.touches() && std::abs(overlap) <= FreeCentre::k_bearing_overlap;
+    return is_idle ? opening : opening + overlap;
   }
   /// Writes the position of the centre that balances the forces.
   void move(const Law& law, std::span<const Contact> contacts, double xi, std::span<double> y) {
@@ -150,7 +150,7 @@ class CentreMode {
     if (c.is_on_primary_branch() && roles_[i] == Role::bearing) add(k_retreat, -1, "retreat", 0.0);
   }
   /// True if a contact whose guard has found it lost still has an overlap. The balance has the round-off of the largest
-  /// forces, which may have opened a trial state of a shallow contact.
+  /// forces, which may have opened a trial state of a contact near the resolution.
   [[nodiscard]] bool bears_on(const Law& law, std::span<const Contact> contacts, std::size_t i, double xi,
                               std::span<const double> y) {
     return overlap_as_touching(law, contacts, i, xi, position(y)) > k_touch;
@@ -161,10 +161,8 @@ class CentreMode {
                                    double target, double xi, std::span<const double> y, const Vector& velocity) {
     const WallDrive& drive = contacts[i].drive();
     if (kind == k_retreat) {
-      // A contact this shallow does not retreat: its dent would vanish with it, and round-off decides which of several
-      // such contacts carry the centre.
       const double overlap = drive.value(xi) + carried(i, y) - law.opening(contacts[i].branch());
-      if (overlap <= k_shallow) return k_at_rest / reach_;
+      if (overlap <= k_steady_overlap) return k_at_rest / reach_;
       // The rate of a contact at rest is round-off.
       const double fastest = std::max(velocity.norm(), fastest_wall_);
       return (drive.rate() + centre_.along(i, velocity) + k_at_rest * fastest) / reach_;
@@ -182,9 +180,10 @@ class CentreMode {
   /// Change of an overlap (over R0), from an instant to the one ahead, that is round-off.
   static constexpr double k_no_change = 1e-14;
   /// Gap or overlap (over R0) up to which wall and particle just meet; a contact is lost when its gap becomes larger.
-  static constexpr double k_touch = 1e-12;
-  /// Overlap (over R0) of a shallow contact, little more than k_touch.
-  static constexpr double k_shallow = 10.0 * k_touch;
+  static constexpr double k_touch = k_resolution;
+  /// Overlap (over R0) up to which a contact does not retreat: its dent would vanish with it, and round-off decides
+  /// which of several such contacts carry the centre.
+  static constexpr double k_steady_overlap = 10.0 * k_touch;
   /// Rate of a contact's displacement, over that of the fastest wall or the centre, that is round-off.
   static constexpr double k_at_rest = 1e-9;
 
@@ -234,8 +233,8 @@ class CentreMode {
   void write_position(const Vector& c, std::span<double> y) const noexcept {
     for (std::size_t k = 0; k < dimension(); ++k) y[slot_ + k] = c[static_cast<Eigen::Index>(k)];
   }
-  /// Where a particle that no contact holds comes to rest under the forces that begin with a step: between walls that
-  /// bear them. No force resists the motion, which takes no time.
+  /// Position at which a particle that no contact holds comes to rest under the forces that begin with a step: between
+  /// walls that bear them. No force resists the motion, which takes no time.
   /// @return none if a contact bears already, if no force begins, or if no wall is in the path
   [[nodiscard]] std::optional<Vector> support_of_loose_particle(const Law& law, std::span<const Contact> contacts,
                                                                 std::span<const double> y) const {

@@ -54,7 +54,8 @@ class CentreWalls {
 class FreeCentre {
  public:
   using Vector = CentreLines::Vector;
-  /// Smallest overlap (over R0) of a contact that bears; below, the contact only touches.
+  /// Smallest overlap (over R0) of a contact that bears; below, the contact is idle. It is a tenth of k_resolution: a
+  /// contact that closes by as much as that bears.
   static constexpr double k_bearing_overlap = 1e-13;
   explicit FreeCentre(std::span<const ContactClass> classes);
 

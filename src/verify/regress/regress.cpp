@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The direct form reproduces a stored curve but for the round-off of another compiler or library.
-constexpr double k_direct_tolerance = 1e-10;
 // Tolerance of integrated curves, over their rtol.
 constexpr double k_rtol_multiple = 50.0;
 // Tolerances of a stored curve that had to be integrated itself, over those of the scenario.
@@ -108,7 +106,8 @@ void compare_with_stored(const Run& run, const fs::path& curves, RegressionResul
 
 RegressionResult compare(const Run& run, const fs::path& curves) {
   RegressionResult result{.scenario = run.scenario.name, .integrator = run.integrator.used};
-  result.tolerance = run.integrator.is_direct() ? k_direct_tolerance : k_rtol_multiple * run.scenario.numerics.rtol;
+  result.tolerance =
+      run.integrator.is_direct() ? integrators::k_direct_tolerance : k_rtol_multiple * run.scenario.numerics.rtol;
   try {
     compare_with_stored(run, curves, result);
   } catch (const std::runtime_error& error) {

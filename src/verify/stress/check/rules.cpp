@@ -21,15 +21,8 @@
 namespace monograin {
 namespace {
 
-// Error of a controlled integrator over its rtol (docs/performance.md).
-constexpr double k_rtol_multiple = 100.0;
 // Error over rtol for each step of a long program: errors of work have one sign and add up (measured: 16).
 constexpr double k_rtol_multiple_of_step = 25.0;
-// Two runs of the direct form: each is polished to 1e-12 of the largest values, and work is a sum of
-// quadratures.
-constexpr double k_direct_tolerance = 1e-10;
-// Loss of dissipation of which models need not warn, over the largest energy.
-constexpr double k_tolerated_loss = 1e-6;
 // rtol at which the work of runs was counted.
 constexpr double k_counted_rtol = 1e-8;
 // Error of the direct form's work over rtol (measured: 0.0014).
@@ -320,7 +313,7 @@ void check_energy(const Run& run, Violations& found) {
   // A law that returns more energy than it received has to warn of it.
   const bool is_warned = run.record.creates_energy;
   const double of_run = run.integrator.is_direct() ? direct_work_tolerance(run) : own_tolerance(run);
-  const double share = is_conservative ? k_direct_tolerance : k_tolerated_loss;
+  const double share = is_conservative ? integrators::k_direct_tolerance : k_least_noted_fall;
   const double most = (share + of_run) * scale + energy_floor(run);
   double highest = 0.0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -376,7 +369,7 @@ std::string stated_failure(const Run& run) {
   const bool may_be_stiff = !suits_stiff_equations(run.integrator.used) || !find_model(run.scenario.model)->has_walls();
   if (is_too_much_work && may_be_stiff) return "stiff equations";
   if (!record.difficulty || (is_too_much_work && record.difficulty == Difficulty::soft_centre)) return "";
-  return std::string(advice(*record.difficulty));
+  return advice(*record.difficulty);
 }
 
 void check_events(const Run& run, Violations& found) {
@@ -460,9 +453,9 @@ double direct_work_tolerance(const Run& run) {
 }
 
 double own_tolerance(const Run& run) {
-  if (run.integrator.is_direct()) return k_direct_tolerance;
+  if (run.integrator.is_direct()) return integrators::k_direct_tolerance;
   const auto steps = static_cast<double>(step_count(run.scenario));
-  return std::max(k_rtol_multiple, k_rtol_multiple_of_step * steps) *
+  return std::max(integrators::k_error_over_rtol, k_rtol_multiple_of_step * steps) *
          std::max(run.scenario.numerics.rtol, k_finest_rtol);
 }
 
