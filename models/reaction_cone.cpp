@@ -26,23 +26,23 @@ bool in_reaction_cone(const Eigen::Vector3d& push, std::span<const Eigen::Vector
     if (best == directions.end() || help(*best) <= k_no_help || bearing.size() == k_most_bearing) return false;
     bearing.push_back(*best);
     shares.push_back(0.0);
-    for (double way = 0.0; way < 1.0 && !bearing.empty();) {
+    for (double share_of_step = 0.0; share_of_step < 1.0 && !bearing.empty();) {
       Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, k_most_bearing> together(
           3, static_cast<Eigen::Index>(bearing.size()));
       for (std::size_t k = 0; k < bearing.size(); ++k) together.col(static_cast<Eigen::Index>(k)) = bearing[k];
       const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, k_most_bearing, 1> wanted =
           together.colPivHouseholderQr().solve(-unit);
       // Moves the shares towards the least-squares solution until one becomes zero, whose direction is dropped.
-      way = 1.0;
+      share_of_step = 1.0;
       std::size_t first = bearing.size();
       for (std::size_t k = 0; k < bearing.size(); ++k) {
         const double to = wanted[static_cast<Eigen::Index>(k)];
-        if (to >= 0.0 || shares[k] / (shares[k] - to) >= way) continue;
-        way = shares[k] / (shares[k] - to);
+        if (to >= 0.0 || shares[k] / (shares[k] - to) >= share_of_step) continue;
+        share_of_step = shares[k] / (shares[k] - to);
         first = k;
       }
       for (std::size_t k = 0; k < bearing.size(); ++k) {
-        shares[k] += way * (wanted[static_cast<Eigen::Index>(k)] - shares[k]);
+        shares[k] += share_of_step * (wanted[static_cast<Eigen::Index>(k)] - shares[k]);
       }
       if (first == bearing.size()) break;
       bearing.erase(bearing.nth(first));

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "system/resolution.hpp"
+
 namespace monograin {
 
 /// True if non-negative multiples of the directions, none above a million times the push, add up to its opposite to
@@ -13,6 +15,6 @@ namespace monograin {
 /// @param directions  unit vectors
 /// @param nothing     tolerance: unbalanced remainder over the push
 [[nodiscard]] bool in_reaction_cone(const Eigen::Vector3d& push, std::span<const Eigen::Vector3d> directions,
-                                    double nothing = 1e-6);
+                                    double nothing = k_no_direction);
 
 }  // namespace monograin

@@ -215,7 +215,7 @@ std::optional<UnloadingFit> fit_unloading(std::span<const double> displacements,
     return scanned_minimum([&](double exponent) { return error_of(length, exponent); }, 1.0, 6.0, 20);
   };
   // The curve ends between just below the last point and first touch.
-  const double shortest = std::min(largest, (largest - lowest) * (1.0 + 1e-9));
+  const double shortest = std::min(largest, (largest - lowest) * (1.0 + k_same_number));
   const double length =
       scanned_minimum([&](double trial) { return best_exponent(trial).value; }, shortest, largest, 100).at;
   const double recovery = std::cbrt(f.front() / hertz_stiffness);

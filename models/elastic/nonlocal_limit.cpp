@@ -14,6 +14,11 @@
 namespace monograin::nonlocal {
 namespace {
 
+// Longest step along the path of states, in the unknowns and xi. The search gives up below the shortest step, or below
+// that xi of the first state.
+constexpr double k_longest_path_step = 0.05;
+constexpr double k_shortest_path_step = 1e-9;
+
 /// A point of the path: the unknowns, then xi.
 using Point = Eigen::VectorXd;
 
@@ -102,7 +107,7 @@ std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ra
       search.solve(contacts, ramps, xi, y);
       break;
     } catch (const std::domain_error&) {
-      if (xi < 1e-9) throw;
+      if (xi < k_shortest_path_step) throw;
     }
   }
 
@@ -112,13 +117,13 @@ std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ra
   point[point.size() - 1] = xi;
   Point direction = Point::Zero(point.size());
   direction[point.size() - 1] = 1.0;
-  double length = 0.05;
+  double length = k_longest_path_step;
   while (xi_of(point) < end) {
     direction = path.tangent(point, direction);
     const std::optional<Point> next = path.beyond(point, direction, length);
     if (!next) {
       length *= 0.5;
-      if (length < 1e-9) {
+      if (length < k_shortest_path_step) {
         throw std::domain_error("the path of equilibria ends at xi = " + std::to_string(xi_of(point)) +
                                 " with a margin of " + std::to_string(contacts.margin(unknowns(point))));
       }
@@ -126,7 +131,7 @@ std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ra
     }
     if (contacts.margin(unknowns(*next)) > 0.0) {
       point = *next;
-      length = std::min(2.0 * length, 0.05);
+      length = std::min(2.0 * length, k_longest_path_step);
       continue;
     }
     Point found = *next;

@@ -168,13 +168,14 @@ double phi_at(double theta, double sine, double cosine) noexcept {
 }
 
 double inverse_phi(double value) noexcept {
-  double theta = std::cbrt(1.5 * value);  // phi = (2/3) theta^3 (1 - theta^2/5 + ...)
+  constexpr double k_last_angle_step = 1e-9;  // over theta; the next step of Newton's method is round-off
+  double theta = std::cbrt(1.5 * value);      // phi = (2/3) theta^3 (1 - theta^2/5 + ...)
   if (theta == 0.0) return 0.0;
   for (int iteration = 0; iteration < 20; ++iteration) {
     const double sine = std::sin(theta);
     const double step = (value - phi(theta)) / (2.0 * sine * sine);
     theta += step;
-    if (std::abs(step) < 1e-9 * theta) break;  // the next step is round-off
+    if (std::abs(step) < k_last_angle_step * theta) break;
   }
   return theta;
 }
@@ -324,10 +325,15 @@ double elastic_overlap(ElasticProfile profile, double composite_modulus, double 
 }
 
 double plastic_overlap(const Material& material, double radius, double force, double area_constant, double guess) {
+  constexpr double k_inside = 1e-3;  // least distance of the first overlap from the ends of the bracket
+  // Steps, over the overlap, that end the search: any as short as the first, and those below the second that are no
+  // shorter than the step before.
+  constexpr double k_shortest_overlap_step = 1e-16;
+  constexpr double k_noisy_overlap_step = 1e-13;
   // At `low` the contact has no area; the force rises from there to its largest value not far below the radius.
   double low = radius - std::sqrt(radius * radius + area_constant);
   double high = radius;
-  double overlap = std::clamp(guess, low + 1e-3 * (radius - low), 0.999 * radius);
+  double overlap = std::clamp(guess, low + k_inside * (radius - low), (1.0 - k_inside) * radius);
   double last_step = k_infinity;
   for (int iteration = 0; iteration < 100; ++iteration) {
     const Contact contact = plastic_contact(material, radius, overlap, area_constant);
@@ -340,7 +346,7 @@ double plastic_overlap(const Material& material, double radius, double force, do
     if (is_outside) next = std::midpoint(low, high);
     const double size = std::abs(next - overlap);
     overlap = next;
-    if (size > 1e-16 * overlap && (size < last_step || size >= 1e-13 * overlap)) {
+    if (size > k_shortest_overlap_step * overlap && (size < last_step || size >= k_noisy_overlap_step * overlap)) {
       last_step = size;
       continue;
     }

@@ -211,7 +211,8 @@ template <class State>
     if (!(std::abs(step) < 2.0)) return std::nullopt;
     x = std::clamp(x * std::exp(step), lower, upper);
     const double quadratic = std::max(1.0, std::abs(step) / (last * last));
-    if (quadratic * step * step < 1e-16) return x;
+    constexpr double k_round_off_step = 1e-16;  // of log(x)
+    if (quadratic * step * step < k_round_off_step) return x;
     last = std::abs(step);
   }
   return std::nullopt;

@@ -70,8 +70,11 @@ class SolverError : public std::runtime_error {
 };
 
 /// Length (step coordinates) below which a step that leaves the domain of the equations has reached the domain's
-/// boundary. The length shrinks towards the beginning of a step of the program, where a contact may be that shallow.
-[[nodiscard]] inline double least_progress(double xi) noexcept { return 1e-13 * std::max(xi, 1e-7); }
+/// boundary. The length shrinks towards the beginning of a step of the program, where an overlap may be as small.
+[[nodiscard]] inline double least_progress(double xi) noexcept {
+  constexpr double k_nearest_start = 1e-7;  // nearer to the start, the length is constant
+  return k_same_instant * std::max(xi, k_nearest_start);
+}
 
 /// Internal steps of one step of the program after which it is given up.
 inline constexpr long k_most_internal_steps = 200'000;

@@ -16,6 +16,7 @@ namespace {
 // Pieces of a step of the program in which events are located one after the other. Events do not depend on this number
 // as long as a guard crosses zero once between two evaluations.
 constexpr double k_pieces = 32.0;
+constexpr double k_at_end_of_piece = 1e-9;  // of a piece: a remainder as short as this belongs to the next piece
 
 class Stepped final : public EventLocator {
  public:
@@ -45,7 +46,8 @@ class Stepped final : public EventLocator {
       ++statistics_.steps;
       statistics_.last_step = step_end_ - begin_;
     }
-    const double end = std::min(std::min(1.0, (std::floor(begin_ * k_pieces + 1e-9) + 1.0) / k_pieces), step_end_);
+    const double end =
+        std::min(std::min(1.0, (std::floor(begin_ * k_pieces + k_at_end_of_piece) + 1.0) / k_pieces), step_end_);
     move_end(end);
     if (guard_set_.size() > 0) sample_middle();
     locate_event();

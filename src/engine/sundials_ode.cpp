@@ -423,7 +423,8 @@ class SundialsOde final : public Integrator {
     const auto values = view(y);
     const auto before = view(dy);
     const double norm = N_VWrmsNorm(dy, ode.weights_.get());
-    const double round_off = 1e3 * k_epsilon * static_cast<double>(values.size()) * std::abs(step) * norm;
+    constexpr double k_increment_ratio = 1e3;  // over the round-off, as in the library
+    const double round_off = k_increment_ratio * k_epsilon * static_cast<double>(values.size()) * std::abs(step) * norm;
     const double least = norm > 0.0 ? round_off : 1.0;
     for (std::size_t j = 0; j < values.size(); ++j) {
       const double value = values[j];

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "system/resolution.hpp"
+
 namespace monograin::figure {
 namespace {
 
@@ -27,7 +29,7 @@ constexpr double k_flat_steps = 1.2;  ///< distance of the ends of the axis from
   if (!(least > 0.0)) return 1.0;
   const double decade = std::pow(10.0, std::floor(std::log10(least)));
   for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * decade >= least * (1.0 - 1e-9)) return factor * decade;  // 0.4/5 may exceed 0.08 by round-off
+    if (factor * decade >= least * (1.0 - k_same_number)) return factor * decade;  // 0.4/5 may exceed 0.08 by round-off
   }
   return 10.0 * decade;
 }
