@@ -87,8 +87,7 @@ void EquilibriumSearch::close_gaps(Contacts& contacts, std::span<const char> is_
 /// Follows the straight line from the displacements, forces and imbalance of the state y to the targets. From a point
 /// to a near one, Newton's method contracts only on the branch of the first.
 void EquilibriumSearch::approach_in_steps(Contacts& contacts, std::span<double> y) {
-  const double pivot = contacts.least_pivot(y);
-  if (!(pivot > 0.0)) throw DomainError({Limit::applicability, -1, "pivot", pivot});
+  if (!(contacts.least_pivot(y) > 0.0)) throw DomainError(Limit::applicability);
   std::ranges::copy(y, state_.begin());
   set_targets_of(contacts, y, targets_, starts_);
   const Eigen::Vector3d imbalance = contacts.net_force(contacts.evaluate(y).forces);

@@ -65,7 +65,7 @@ LocalLaw::LocalLaw(Terms terms) noexcept
 
 LocalContact LocalLaw::at(double s) const {
   if (!(s < end_)) {
-    throw DomainError({Limit::contact_as_wide_as_particle, -1, "(contact radius/R0)^2", s});
+    throw DomainError({Limit::contact_as_wide_as_particle, -1, "contact radius/R0", std::sqrt(s)});
   }
   if (s <= 0.0) return {.approach = s, .approach_slope = 1.0, .force = 0.0, .contact_radius = 0.0};
   const double a = std::sqrt(s);
@@ -109,10 +109,10 @@ double LocalLaw::signed_square(double approach) const {
 }
 
 double LocalLaw::signed_square_under(double force) const {
-  if (!(force >= 0.0)) throw DomainError({Limit::wall_would_pull, -1, "force/(E* R0^2)", force});
+  if (!(force >= 0.0)) throw DomainError({Limit::wall_would_pull, -1, "force over composite modulus and R0^2", force});
   if (force == 0.0) return 0.0;
   if (force > greatest_force_) {
-    throw DomainError({Limit::contact_as_wide_as_particle, -1, "force/(E* R0^2)", force});
+    throw DomainError({Limit::contact_as_wide_as_particle, -1, "force over composite modulus and R0^2", force});
   }
   double bound = std::cbrt(0.75 * force);  // Hertz's contact radius; all further terms are positive
   if (terms_ == Terms::all) {

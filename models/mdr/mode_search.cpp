@@ -252,15 +252,16 @@ std::optional<DomainEnd> ModeSearch::end_of(const Guard& guard, ContactCaps& cap
   switch (guard.kind) {
     case k_softened:
       return DomainEnd{
-          event,
-          {Limit::centre_softening, -1, "their stiffness over that of shallow contacts", centre_stiffness(p_).value}};
+          event, {Limit::centre_softening, -1, "tangent stiffness over the initial one", centre_stiffness(p_).value}};
     case k_caps:
       return caps.meet(i, p_.at().r, log);
     case k_singular:
     case k_covered:
-      return DomainEnd{event, {Limit::free_surface_used_up, -1, "growth slope D_eff/(4 pi R^2)", k_least_slope}};
+      return DomainEnd{event,
+                       {Limit::free_surface_used_up, -1, "free surface over the particle's surface", k_least_slope}};
     case k_greatest_force:
-      return DomainEnd{event, {Limit::greatest_force, guard.index, "stiffness left", stiffness_left(p_, i)}};
+      return DomainEnd{
+          event, {Limit::greatest_force, guard.index, "tangent stiffness over the initial one", stiffness_left(p_, i)}};
     case k_volume:
       return DomainEnd{event, {Limit::half_volume, -1, "V/V0", 0.5}};
     default:
@@ -363,7 +364,8 @@ void ModeSearch::accept(double xi, std::span<double> y) {
   }
   for (std::size_t i = 0; i < p_.size(); ++i) {
     if (has_greatest_force(p_, i) && stiffness_left(p_, i) < k_last_stiffness)
-      throw DomainError({Limit::greatest_force, static_cast<int>(i), "stiffness left", stiffness_left(p_, i)});
+      throw DomainError({Limit::greatest_force, static_cast<int>(i), "tangent stiffness over the initial one",
+                         stiffness_left(p_, i)});
   }
   if (!p_.centre().is_free()) return;
   p_.mode.held_centre = centre_of(y, p_.centre().count());

@@ -22,7 +22,7 @@ constexpr std::array k_words{
     Words{Limit::cell_filled, "cell-filled", "the particle fills its cell, where its pressure would be infinite"},
     Words{Limit::contact_as_wide_as_particle, "contact-as-wide-as-particle", "a contact is as wide as the particle"},
     Words{Limit::surface_covered, "surface-covered",
-          "the contacts cover 85 % of the surface, where the law's coverage factor ends"},
+          "the contacts cover so much of the surface that the law's coverage factor ends"},
     Words{Limit::overlap_of_diameter, "overlap-of-diameter", "an overlap is twice the apparent radius"},
     Words{Limit::caps_intersect, "caps-intersect",
           "contact caps intersect, the source's limit of validity (strict = true)"},
@@ -58,7 +58,7 @@ constexpr std::array k_words{
     Words{Limit::greatest_strain, "greatest-strain", "the packing's strain does not grow any further"},
     Words{Limit::greatest_stress, "greatest-stress", "the packing's stress does not grow any further"},
     Words{Limit::infinite_stress, "infinite-stress",
-          "the particles give way as much as the packing, M_eff = c1 K Z Phi: its stress is infinite"},
+          "the particles are compressed as much as the packing: its stress is infinite"},
     Words{Limit::no_solution, "no-solution", "no state was found"},
     Words{Limit::unequal_durations, "unequal-durations", "steps end together; give equal durations"},
 };

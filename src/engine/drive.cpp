@@ -72,7 +72,7 @@ class Drive {
       result.difficulty = difficulty_here();
       if (result.difficulty) result.message += fmt::format("; {}", advice(*result.difficulty));
       if (rtol_ && *rtol_ < k_finest_rtol) {
-        result.message += fmt::format("; rtol = {:.3g} asks for errors of the size of rounding, expected {:g} or more",
+        result.message += fmt::format("; rtol = {:.3g} asks for errors of the size of round-off, expected {:g} or more",
                                       *rtol_, k_finest_rtol);
       }
     }

@@ -43,7 +43,7 @@ void StepWork::end_internal_step(double from, double xi) {
   if (idle_steps_ <= k_most_idle_steps) return;
   throw SolverError(
       Failure::no_progress, xi, integrator_.statistics().last_step,
-      fmt::format("{} internal steps in a row are shorter than the rounding of the step coordinate", idle_steps_));
+      fmt::format("{} internal steps in a row are shorter than the round-off of the step coordinate", idle_steps_));
 }
 
 void StepWork::count_event(double length, double xi) {

@@ -152,7 +152,7 @@ TEST_P(EveryIntegrator, AsksWhetherItsToleranceIsTooFineIfItHasOne) {
   for (const double rtol : {1e-8, 1e-12}) {
     const TestRun result = run_toy(chattering_toy(), GetParam(), rtol);
     ASSERT_EQ(result.record.status, RunStatus::failed);
-    const bool does = result.record.message.find("asks for errors of the size of rounding") != std::string::npos;
+    const bool does = result.record.message.find("asks for errors of the size of round-off") != std::string::npos;
     EXPECT_EQ(does, rtol < 1e-11 && !is_direct()) << result.record.message;
   }
 }

@@ -403,7 +403,7 @@ TEST(CelLimit, IsWhereTheContactsCoverTheSurface) {
   EXPECT_EQ(now.record.status, RunStatus::stopped);
   EXPECT_EQ(now.record.limit, Limit::surface_covered) << now.record.message;
   EXPECT_NEAR(now.last("coverage"), 1.7, 1e-7);
-  EXPECT_TRUE(contains(now.record.message, "cover 85 % of the surface")) << now.record.message;
+  EXPECT_TRUE(contains(now.record.message, "share of the surface = 0.85")) << now.record.message;
 }
 
 TEST(CelLimit, IsNotMetInsideTheFittedRange) {

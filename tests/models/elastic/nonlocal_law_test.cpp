@@ -173,11 +173,14 @@ TEST(NonlocalLawOfAllTerms, IsWhatFewerTermsTendTo) {
 TEST(NonlocalLawOfAllTerms, EndsWhereTheContactIsAsWideAsTheSphere) {
   const LocalLaw law(Terms::all);
   EXPECT_EQ(law.end(), 1.0);
-  for (const double s : {1.0, 1.25, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double s : {1.0, 2.25, std::numeric_limits<double>::quiet_NaN()}) {
     for (const std::string& message : {refusal<std::domain_error>([&] { return law.at(s); }),
                                        refusal<std::domain_error>([&] { return law.energy(s); }),
                                        refusal<std::domain_error>([&] { return law.pressure(s, 0.0); })}) {
-      EXPECT_TRUE(contains(message, std::isnan(s) ? "nan" : s == 1.0 ? "= 1)" : "= 1.25)")) << message;
+      EXPECT_TRUE(contains(message, std::isnan(s) ? "nan"
+                                    : s == 1.0    ? "radius/R0 = 1)"
+                                                  : "radius/R0 = 1.5)"))
+          << message;
     }
   }
   EXPECT_NO_THROW(static_cast<void>(law.signed_square(15.0)));
