@@ -120,7 +120,7 @@ void GuardSet::arm(const Particle& p) {
     const int index = static_cast<int>(i);
     const ClassState& c = p.classes[i];
     if (!c.is_force_controlled()) {
-      add(c.touches ? k_lost : k_made, index).is_silent = c.gives_way;
+      add(c.touches ? k_lost : k_made, index).is_silent = c.is_released;
     } else if (c.drive.end() < 0.0) {
       Guard& lost = add(k_lost, index);
       lost.is_exact = lost.is_monotone = true;

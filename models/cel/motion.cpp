@@ -52,7 +52,7 @@ double Motion::evaluate(Particle& p, double xi, std::span<const double> y) {
   rates_.push_back(p.flow_rate(rates_));
   drawn_rates_.resize(p.layout().size());
   Eigen::Map<Eigen::VectorXd>(drawn_rates_.data(), size) = solutions_.rowwise().sum();
-  p.let_core_flow(drawn_rates_);
+  p.write_core_rates(drawn_rates_);
   margin_ = sign * slowness(p, rates_);
   power_ = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {

@@ -9,8 +9,8 @@
 namespace monograin::cel {
 namespace {
 
-/// Elastic displacement, over the program's depth, of a contact that may be idle and only carry a free centre along: no
-/// integrator is exact enough to show that such a contact bears.
+/// Elastic displacement, over the program's depth, of a contact that may be idle: no integrator is exact enough to
+/// show that such a contact bears.
 constexpr double k_idle_touch = 1e-8;
 constexpr double k_gap_of_left_wall = 10.0 * k_idle_touch;  // over the depth
 
@@ -54,14 +54,14 @@ double Particle::slack(std::size_t i) const noexcept {
   return (layout_.directions > 0 && classes[i].touches ? k_idle_touch : k_touch) * depth_;
 }
 
-void Particle::give_way(std::size_t i, std::span<double> y) {
-  classes[i].gives_way = true;
+void Particle::release_wall(std::size_t i, std::span<double> y) {
+  classes[i].is_released = true;
   classes[i].drive = contacts::WallDrive({0.0, 0.0, Control::force}, 1.0);
   y[i] = 0.0;
   forget();
 }
 
-std::optional<std::vector<std::size_t>> Particle::let_go(std::span<double> y) {
+std::optional<std::vector<std::size_t>> Particle::leave_walls(std::span<double> y) {
   if (layout_.directions == 0) return std::nullopt;
   const auto presses = [this](const ClassState& c) { return c.touches && !is_idle(c); };
   if (std::ranges::any_of(classes, presses)) return std::nullopt;
@@ -73,15 +73,15 @@ std::optional<std::vector<std::size_t>> Particle::let_go(std::span<double> y) {
   if (left.empty()) return std::nullopt;
   const double gap = k_gap_of_left_wall * depth_;
   Eigen::MatrixXd arms(left.size(), layout_.directions);
-  Eigen::VectorXd ways(left.size());
+  Eigen::VectorXd distances(left.size());
   for (std::size_t k = 0; k < left.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
     arms.row(row) = centre.lines().arm(left[k]).head(static_cast<Eigen::Index>(layout_.directions)).transpose();
-    ways[row] = -classes[left[k]].contact.u - gap;
+    distances[row] = -classes[left[k]].contact.u - gap;
   }
-  const Eigen::VectorXd way = arms.completeOrthogonalDecomposition().solve(ways);
-  if ((arms * way - ways).lpNorm<Eigen::Infinity>() > 0.5 * gap) return std::nullopt;  // walls on both sides
-  for (std::size_t k = 0; k < layout_.directions; ++k) y[layout_.centre(k)] += way[static_cast<Eigen::Index>(k)];
+  const Eigen::VectorXd move = arms.completeOrthogonalDecomposition().solve(distances);
+  if ((arms * move - distances).lpNorm<Eigen::Infinity>() > 0.5 * gap) return std::nullopt;  // walls on both sides
+  for (std::size_t k = 0; k < layout_.directions; ++k) y[layout_.centre(k)] += move[static_cast<Eigen::Index>(k)];
   for (const std::size_t i : left) y[i] = -gap;
   centre.rest_at(layout_.centre_of(y));
   forget();
@@ -202,7 +202,7 @@ double Particle::flow_rate(std::span<const double> dy) const noexcept {
   return Lam;
 }
 
-void Particle::let_core_flow(std::span<double> dy) const noexcept {
+void Particle::write_core_rates(std::span<double> dy) const noexcept {
   if (!layout_.has_core()) return;
   const double Lam = flow_rate(dy);
   for (std::size_t j = 0; j < shapes_.size(); ++j) dy[layout_.core() + j] = Lam * flow_[j];

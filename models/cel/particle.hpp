@@ -56,7 +56,7 @@ struct ClassState {
   Eigen::Matrix3d spread;  ///< sum of n n over all walls
 
   contacts::WallDrive drive{};
-  bool gives_way = false;  ///< the wall bears no force: it rests until the surface meets it, then moves along
+  bool is_released = false;  ///< the wall bears no force: it rests until the surface meets it, then moves along
   bool touches = false;
   bool flows = false;  ///< the dent grows
 
@@ -105,8 +105,8 @@ class Particle {
   [[nodiscard]] Core core_of(std::span<const double> y) const noexcept;
   /// n.x, by which the displacement of the centre deepens the contacts of a class.
   [[nodiscard]] double carried(std::size_t i) const noexcept { return centre.lines().arm(i).dot(x_); }
-  /// Lets a wall move with the surface and bear no force.
-  void give_way(std::size_t i, std::span<double> y);
+  /// Releases a wall: it moves with the surface and bears no force.
+  void release_wall(std::size_t i, std::span<double> y);
   /// Writes the prescribed forces into a state.
   void prescribe(double xi, std::span<double> y) const noexcept;
 
@@ -118,7 +118,7 @@ class Particle {
   void evaluate(std::span<const double> y, bool with_yield = true);
   /// Chooses the equations (E) that suit the forces at the state that was evaluated.
   void choose_balance();
-  /// True for a wall that only carries a loose particle along: it bears no more than the weak spring does.
+  /// True for an idle wall of a loose particle: it bears no more than the weak spring does.
   [[nodiscard]] bool is_idle(const ClassState& c) const noexcept {
     constexpr double k_times = 10.0;
     return c.contact.F < k_times * Centre::k_weak_spring * depth_;
@@ -126,7 +126,7 @@ class Particle {
   /// Moves an unloaded free particle off the walls that rest or withdraw. Otherwise the weak spring, which the former
   /// load has stretched, would press it against them.
   /// @return the contacts that it opens, without those that the spring alone had closed; none if it does not move
-  [[nodiscard]] std::optional<std::vector<std::size_t>> let_go(std::span<double> y);
+  [[nodiscard]] std::optional<std::vector<std::size_t>> leave_walls(std::span<double> y);
   /// If a force is prescribed, too, moves the spring of the centre with the walls that press under a displacement, in
   /// the mode that begins: the spring must be relaxed when that force vanishes.
   void follow_walls(double xi);
@@ -146,7 +146,7 @@ class Particle {
   /// Lam, from the rates of the dents.
   [[nodiscard]] double flow_rate(std::span<const double> dy) const noexcept;
   /// Writes the rates of the core, which follow from the rates of the dents by its flow rule.
-  void let_core_flow(std::span<double> dy) const noexcept;
+  void write_core_rates(std::span<double> dy) const noexcept;
 
   std::vector<ClassState> classes;
   Centre centre;

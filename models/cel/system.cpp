@@ -46,7 +46,7 @@ std::vector<Unknown> unknowns_of(const Particle& p, std::span<const ContactClass
                         .kind = differential,
                         .scale = depth,
                         .is_implicitly_algebraic = true,
-                        .may_rest = true});
+                        .may_be_undetermined = true});
   while (unknowns.size() < p.layout().size()) unknowns.push_back({.name = "core", .kind = differential});
   // Scale of the work: that of elastic contacts or of contacts that flow, whichever is less.
   const double work = depth * depth * std::min(std::sqrt(depth), p.material().Y);
@@ -87,7 +87,7 @@ void System::start(std::span<double> y) {
     y[i] = -classes_[i].gap / length_;
     y[particle_.layout().dent(i)] = particle_.material().a_Y;
     ClassState& c = particle_.classes[i];
-    c.flows = c.gives_way = c.touches = false;
+    c.flows = c.is_released = c.touches = false;
     c.hold(y[i]);
   }
   particle_.forget();
@@ -140,7 +140,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
       if (!particle_.classes[i].flows) res[layout.dent(i)] = dy[layout.dent(i)];
     }
     std::ranges::copy(dy, state_.begin());
-    particle_.let_core_flow(state_);
+    particle_.write_core_rates(state_);
     for (std::size_t j = layout.core(); j < layout.size(); ++j) res[j] = dy[j] - state_[j];
     motion_.evaluate(particle_, xi, y);
   }
@@ -156,14 +156,14 @@ std::optional<double> System::closed_quadrature(double xi, std::span<const doubl
 
 // --- program and mode
 
-/// Takes up the ramp of a step; the state is evaluated.
-void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
+/// Sets the ramp of a wall for a step; the state is evaluated.
+void System::set_ramp(std::size_t i, const Ramp& ramp, std::span<double> y) {
   ClassState& c = particle_.classes[i];
   const bool takes_force = ramp.control == Control::force && (ramp.start > 0.0 || ramp.end > 0.0);
-  c.gives_way = ramp.control == Control::force && !takes_force;
-  if (c.gives_way) {
+  c.is_released = ramp.control == Control::force && !takes_force;
+  if (c.is_released) {
     if (c.is_force_controlled() || c.contact.u >= -particle_.slack(i))
-      particle_.give_way(i, y);
+      particle_.release_wall(i, y);
     else
       c.hold(c.displacement);
     return;
@@ -175,7 +175,7 @@ void System::take_up(std::size_t i, const Ramp& ramp, std::span<double> y) {
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
   particle_.evaluate(y);
   const Eigen::ArrayX2d before = direction_of(particle_);
-  for (std::size_t i = 0; i < ramps.size(); ++i) take_up(i, ramps[i], y);
+  for (std::size_t i = 0; i < ramps.size(); ++i) set_ramp(i, ramps[i], y);
   particle_.forget();
   // If the new step continues in the direction of the last one, the spring keeps its rest position.
   const double turn = (direction_of(particle_) - before).abs().maxCoeff();
@@ -226,10 +226,10 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     if (guard.kind > k_lost) continue;
     const std::size_t i = guard.place();
     ClassState& c = particle_.classes[i];
-    c.touches = guard.kind == k_made && !c.gives_way;
+    c.touches = guard.kind == k_made && !c.is_released;
     if (!guard.is_silent) log.push_back({guard.name, guard.index});
-    // A wall that gives way moves with the surface that it has met; a force-controlled wall that would pull gives way.
-    if (c.is_force_controlled() || c.gives_way) particle_.give_way(i, y);
+    // A released wall moves with the surface that it has met; a force-controlled wall that would pull is released.
+    if (c.is_force_controlled() || c.is_released) particle_.release_wall(i, y);
   }
   solve(xi, y);
   decide_mode(particle_, motion_, xi, y, guards, log);
@@ -246,7 +246,7 @@ void System::leave_idle_walls(double xi, std::span<double> y, std::size_t first,
   const auto is_lost = [](const Event& event) { return event.name == "contact-lost"; };
   if (std::none_of(log.begin() + static_cast<std::ptrdiff_t>(first), log.end(), is_lost)) return;
   particle_.evaluate(y);
-  const std::optional<std::vector<std::size_t>> opened = particle_.let_go(y);
+  const std::optional<std::vector<std::size_t>> opened = particle_.leave_walls(y);
   if (!opened) return;
   for (const std::size_t i : *opened) log.push_back({"contact-lost", static_cast<int>(i)});
   solve(xi, y);

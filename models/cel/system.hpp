@@ -54,7 +54,7 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
 
  private:
-  void take_up(std::size_t i, const Ramp& ramp, std::span<double> y);
+  void set_ramp(std::size_t i, const Ramp& ramp, std::span<double> y);
   void leave_idle_walls(double xi, std::span<double> y, std::size_t first, std::vector<Event>& log);
   [[nodiscard]] std::optional<DomainEnd> arm_guards(double xi, std::span<const double> y);
   [[nodiscard]] contacts::VisibleContact visible(std::size_t i, double xi) const;

@@ -112,7 +112,7 @@ class IndependentContacts final : public HybridSystem {
       const bool is_by_force = ramps[i].control == Control::force;
       const double stood = is_by_force ? left_at(i, y) : 0.0;
       const WallDrive drive(ramps[i], is_by_force ? units_.force : units_.length);
-      at[i] = contacts_[i].take_up(law_, drive, stood, classes_[i].takes_force, carried(i, y));
+      at[i] = contacts_[i].set_drive(law_, drive, stood, classes_[i].takes_force, carried(i, y));
       // y takes the coordinates of this step even if the step cannot begin, so that the last row shows its start.
       if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate(law_, 0.0, at[i]);
     }
@@ -204,7 +204,7 @@ class IndependentContacts final : public HybridSystem {
         values[g] = centre_->guard_value(law_, contacts_, i, guard.kind, target, xi, y, velocity);
         continue;
       }
-      // The ramp is the scale: it is as short as the contact is shallow.
+      // The length of the ramp is the scale, so that guards of a small overlap have all their digits.
       const WallDrive& ramp = contacts_[i].drive();
       values[g] = (ramp.value(xi) - target) / ramp.size();
     }
@@ -225,7 +225,8 @@ class IndependentContacts final : public HybridSystem {
         c.retreat(law_, displacement(i, xi, y), guard.name, log, carried(i, y));
       else if (guard.kind == k_boundary)
         end = c.pass(law_, *c.next(law_), log);
-      // The next boundary may lie within the round-off of the ramp, as in a very shallow dent: it is passed at once.
+      // The next boundary may lie within the round-off of the ramp, as with the opening of a dent near the resolution:
+      // it is passed at once.
       const bool is_pressed_on = guard.kind == k_made || guard.kind == k_boundary;
       if (!end && is_pressed_on && !follows_centre(i)) end = c.pass_reached(law_, xi, log);
       if (end) return end;

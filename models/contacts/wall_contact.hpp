@@ -173,13 +173,14 @@ class WallContact {
 
   // --- transitions
 
-  /// Takes up the ramp of a step. Values that agree to k_same_value count as equal: a wall at rest goes on from where
-  /// it is, a wall at its dent is not pressed in again, and a ramp between two equal values lets the wall rest.
+  /// Sets the drive of the wall for a step. Values that agree to k_same_value count as equal: a wall at rest goes on
+  /// from where it is, a wall at its dent is not pressed in again, and a ramp between two equal values lets the wall
+  /// rest.
   /// @param d            displacement of the contact at the end of the last step; used if the ramp is one of force
   /// @param takes_force  false: no force has ever moved the wall
   /// @param carried      by how much a free centre has moved towards the wall
   /// @return displacement of the contact
-  double take_up(const Law& law, WallDrive drive, double d, bool takes_force, double carried = 0.0) {
+  double set_drive(const Law& law, WallDrive drive, double d, bool takes_force, double carried = 0.0) {
     constexpr double k_most_round_off = 4.0 * k_round_off;
     const bool is_by_force = drive.is_force_controlled();
     if (drive_.direction() == 0 && is_force_controlled() == is_by_force) drive.start_at(drive_.end());

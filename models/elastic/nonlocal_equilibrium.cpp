@@ -15,7 +15,7 @@ namespace {
 constexpr double k_least_step = 1e-13;  // of the path to a state that Newton's method does not find at once
 constexpr int k_most_steps = 1000;      // on that path, rejected ones included
 constexpr int k_most_round_offs = 20;   // times that the path's end balances but for forces of round-off
-constexpr int k_most_sinking_steps = 100;
+constexpr int k_most_descent_steps = 100;
 constexpr double k_past_balance = 0.5;  // slope of the energy past its minimum on a step, over the slope at the start
 
 // Smallest margin, and smallest contact radius over R, that a search along a path resolves: the path ends at the limit
@@ -58,7 +58,7 @@ void EquilibriumSearch::solve(Contacts& contacts, std::span<const Ramp> ramps, d
     try {
       approach_in_steps(contacts, y);
     } catch (const std::domain_error&) {
-      if (!sink_to_balance(contacts, y)) throw;
+      if (!descend_to_balance(contacts, y)) throw;
     }
   }
 }
@@ -142,7 +142,7 @@ void EquilibriumSearch::throw_no_state(Contacts& contacts, bool is_on_branch, do
 /// definite, so that no guess is too far away.
 /// @return false, with y unchanged, if the search does not reach balance, or if M is not positive definite with every
 /// contact as deep as the deeper of y and the result
-bool EquilibriumSearch::sink_to_balance(Contacts& contacts, std::span<double> y) {
+bool EquilibriumSearch::descend_to_balance(Contacts& contacts, std::span<double> y) {
   if (contacts.free_count() == 0) return false;
   std::ranges::copy(y, state_.begin());
   double size = contacts.centre_of(state_).norm();
@@ -157,7 +157,7 @@ bool EquilibriumSearch::sink_to_balance(Contacts& contacts, std::span<double> y)
   };
   Eigen::Vector3d place = contacts.centre_of(state_);
   auto net = net_at(place);
-  for (int step = 0; net && step < k_most_sinking_steps; ++step) {
+  for (int step = 0; net && step < k_most_descent_steps; ++step) {
     Eigen::Vector3d move = newton_.step_to_balance(contacts, *net);
     if (move.norm() <= k_round_off * size) break;
     move *= std::min(1.0, size / move.norm());

@@ -39,7 +39,7 @@ class EquilibriumSearch {
   void close_gaps(Contacts& contacts, std::span<const char> is_closed, std::span<double> y) const;
   void approach_in_steps(Contacts& contacts, std::span<double> y);
   [[noreturn]] void throw_no_state(Contacts& contacts, bool is_on_branch, double done) const;
-  [[nodiscard]] bool sink_to_balance(Contacts& contacts, std::span<double> y);
+  [[nodiscard]] bool descend_to_balance(Contacts& contacts, std::span<double> y);
 
   CentreSearch centre_;
   Newton newton_;

@@ -95,7 +95,7 @@ bool Newton::evaluate(const Contacts& contacts, const Goal& goal, std::span<doub
 /// centre. Only these walls can bear such a force; they get the stiffness that they would have under it.
 /// @param gap  up to which a wall counts as touching
 /// @return true if there is such a force
-bool Newton::lend_stiffness(const Contacts& contacts, const Goal& goal, double gap, std::span<const double> y) {
+bool Newton::regularize_stiffness(const Contacts& contacts, const Goal& goal, double gap, std::span<const double> y) {
   const double force = unborne_force(contacts, goal.targets, at_.stiffness);
   if (force == 0.0) return false;
   const LocalLaw& law = contacts.law();
@@ -173,7 +173,7 @@ bool Newton::solve(const Contacts& contacts, const Goal& goal, std::span<double>
   double last = 0.0;
   for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
     if (!evaluate(contacts, goal, y)) return false;
-    if (iteration == 0 && may_lend && lend_stiffness(contacts, goal, k_touching * search.farthest, y)) {
+    if (iteration == 0 && may_lend && regularize_stiffness(contacts, goal, k_touching * search.farthest, y)) {
       search.free_steps = k_first_touch_steps;
     }
     if (!tangent_.eliminate(contacts, at_.stiffness)) return false;

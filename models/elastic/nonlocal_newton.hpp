@@ -61,7 +61,8 @@ class Newton {
 
   [[nodiscard]] static Search begin(const Contacts& contacts, const Goal& goal, std::span<const double> y);
   [[nodiscard]] bool evaluate(const Contacts& contacts, const Goal& goal, std::span<double> y);
-  [[nodiscard]] bool lend_stiffness(const Contacts& contacts, const Goal& goal, double gap, std::span<const double> y);
+  [[nodiscard]] bool regularize_stiffness(const Contacts& contacts, const Goal& goal, double gap,
+                                          std::span<const double> y);
   [[nodiscard]] Eigen::Vector3d corrected_net_force(const Contacts& contacts, const Goal& goal);
   void stiffen_touching(const Contacts& contacts, const Goal& goal, const Search& search, std::span<const double> y);
   void balance_centre(const Contacts& contacts, const Goal& goal, const Search& search, bool may_find_more,

@@ -40,7 +40,7 @@ Particle::Particle(const Settings& settings, std::span<const ContactClass> class
 
 // --- program
 
-void Particle::take_up(std::span<const Ramp> ramps, std::span<double> y) {
+void Particle::set_ramps(std::span<const Ramp> ramps, std::span<double> y) {
   for (std::size_t i = 0; i < size(); ++i) {
     const bool was_by_force = is_force_controlled(i);
     const double unit = ramps[i].is_force_controlled() ? settings_.force_unit() : settings_.initial_radius;
@@ -69,7 +69,7 @@ double Particle::square_under_force(std::size_t i, double xi) const {
 
 /// Calls `ask`, and replaces its error where a prescribed force ends and would turn negative: the wall would have to
 /// pull. Contacts leave the centre at the same instant, so that any trial may lack a state there, even a distant one.
-void Particle::or_pull_that_follows(double xi, auto&& ask) const {
+void Particle::or_report_pull(double xi, auto&& ask) const {
   try {
     ask();
   } catch (const std::domain_error&) {
@@ -120,7 +120,7 @@ void Particle::solve(double xi, std::span<double> y) {
   for (std::size_t i = 0; i < size(); ++i) {
     is_own_mode = is_own_mode && (mode.is_closed[i] || state_[i] <= scales_.touch);
   }
-  or_pull_that_follows(xi, [&] { search_.solve(contacts_, ramps_, xi, state_, is_own_mode); });
+  or_report_pull(xi, [&] { search_.solve(contacts_, ramps_, xi, state_, is_own_mode); });
   note(y);
 }
 
@@ -199,7 +199,7 @@ void Particle::rates(double xi, std::span<const double> y, std::span<double> dy)
     if (!is_force_controlled(i)) drawn_ramps_[i].end += k_stabilization * (prescribed(i, xi) - now_[i].displacement);
   }
   const Tolerances tolerances{.touch = scales_.touch, .pull = k_stabilization, .touches = mode.touches};
-  or_pull_that_follows(xi, [&] { motion_.find(contacts_, drawn_ramps_, state_, rates_, tolerances); });
+  or_report_pull(xi, [&] { motion_.find(contacts_, drawn_ramps_, state_, rates_, tolerances); });
   std::ranges::copy(rates_, dy.begin());
   double power = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
@@ -216,7 +216,7 @@ void Particle::rates(double xi, std::span<const double> y, std::span<double> dy)
 
 void Particle::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
   evaluate(xi, y);
-  or_pull_that_follows(xi, [&] { nonlocal::residual(contacts_, ramps_, xi, state_, res.first(state_.size())); });
+  or_report_pull(xi, [&] { nonlocal::residual(contacts_, ramps_, xi, state_, res.first(state_.size())); });
   for (std::size_t i = 0; i < size(); ++i) {
     if (is_force_controlled(i)) res[i] = y[i] - std::pow(state_[i], k_force_power);
   }
@@ -240,7 +240,7 @@ void Particle::branch_reach(std::span<const double> y, std::span<double> reach) 
 }
 
 std::optional<Difficulty> Particle::difficulty(double xi, std::span<const double> y) {
-  if (scales_.is_shallow) return Difficulty::below_resolution;  // the whole program is
+  if (scales_.is_below_resolution) return Difficulty::below_resolution;  // the whole program is
   if (contacts_.margin(evaluate(xi, y)) < k_hard_margin) return Difficulty::near_applicability_limit;
   if (!has_free_centre() || !is_held_softly(contacts_, ramps_, state_, scales_.idle)) return std::nullopt;
   return Difficulty::singular_balance;

@@ -50,8 +50,8 @@ class Particle {
 
   /// Lets a wall rest at a displacement.
   void rest(std::size_t i, double displacement) { ramps_[i] = {displacement, displacement, Control::displacement}; }
-  /// Takes up the ramps [m, N] of a step, and converts the unknowns of walls whose control changes.
-  void take_up(std::span<const Ramp> ramps, std::span<double> y);
+  /// Sets the ramps [m, N] of a step, and converts the unknowns of walls whose control changes.
+  void set_ramps(std::span<const Ramp> ramps, std::span<double> y);
   [[nodiscard]] const Ramp& ramp(std::size_t i) const noexcept { return ramps_[i]; }
   [[nodiscard]] bool is_force_controlled(std::size_t i) const noexcept { return ramps_[i].is_force_controlled(); }
   /// The xi at which a force falls to zero in this step; k_infinity if it does not.
@@ -90,7 +90,7 @@ class Particle {
   /// At the beginning of a step, moves a loose particle with the walls whose forces begin to press it, to walls that
   /// can bear these forces. Does nothing if a contact is loaded, or if no wall is in the path.
   void carry_to_support(std::span<double> y);
-  /// Recomputes the gaps, and the position of a free centre: their errors would close walls that only touch.
+  /// Recomputes the gaps, and the position of a free centre: their errors would close idle walls.
   void clear_centre(double xi, std::span<double> y);
   void rates(double xi, std::span<const double> y, std::span<double> dy);
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res);
@@ -103,7 +103,7 @@ class Particle {
  private:
   [[nodiscard]] double prescribed(std::size_t i, double xi) const noexcept { return ramps_[i].value(xi); }
   [[nodiscard]] double square_under_force(std::size_t i, double xi) const;
-  void or_pull_that_follows(double xi, auto&& ask) const;
+  void or_report_pull(double xi, auto&& ask) const;
   void note(std::span<double> y) const;
   [[nodiscard]] double force_rate(std::size_t i) const;
   [[nodiscard]] double speed_under_force(std::size_t i) const;

@@ -39,7 +39,7 @@ double greatest_depth(const Settings& settings, const Contacts& contacts) {
 Scales scales_of(const Settings& settings, std::span<const ContactClass> classes, const Contacts& contacts) {
   Scales scales;
   double reach = greatest_depth(settings, contacts);
-  scales.is_shallow = reach > 0.0 && reach <= k_resolution;
+  scales.is_below_resolution = reach > 0.0 && reach <= k_resolution;
   for (const ContactClass& c : classes) reach = std::max(reach, c.gap / settings.initial_radius);
   if (!(reach > 0.0)) reach = 1.0;
   // A program may prescribe any displacement, but before R0 a wall is at the centre, or a contact as wide as the
@@ -66,7 +66,7 @@ std::vector<Unknown> unknowns_of(std::span<const ContactClass> classes, const Co
                         .kind = Unknown::Kind::differential,
                         .scale = depth,
                         .is_implicitly_algebraic = true,
-                        .may_rest = true});
+                        .may_be_undetermined = true});
   }
   unknowns.push_back({"work", Unknown::Kind::quadrature, depth * depth * std::sqrt(depth), false});
   return unknowns;

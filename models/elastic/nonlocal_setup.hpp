@@ -33,7 +33,7 @@ struct Scales {
   double idle = 0.0;                          ///< least s of a contact that supports a free centre
   double widest = 1.0;                        ///< largest contact radius over R0 for which states exist
   std::optional<double> greatest_approach{};  ///< approach at `widest`, if the radius there has too few digits
-  bool is_shallow = false;                    ///< no contact of the program is deeper than round-off
+  bool is_below_resolution = false;           ///< no contact of the program is deeper than round-off
 };
 
 [[nodiscard]] Scales scales_of(const Settings& settings, std::span<const ContactClass> classes,

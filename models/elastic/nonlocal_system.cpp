@@ -29,7 +29,7 @@ void System::start(std::span<double> y) {
 
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
   Particle& p = now_.particle;
-  p.take_up(ramps, y);
+  p.set_ramps(ramps, y);
   p.require_pressing_walls(0.0);
   p.carry_to_support(y);
   // A force closes a gap at once; everything else is where it was.

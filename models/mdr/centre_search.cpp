@@ -142,7 +142,7 @@ class BalanceSearch {
     }
     if (!(length >= 0.5 * step_size_)) return false;
     if (length < k_round_off_step) return true;
-    // Soft contacts reached from afar may need one more step of that length, back to where they only touch.
+    // Soft contacts reached from afar may need one more step of that length, back to where they are idle.
     return error_ <= noise_ && std::exchange(has_gone_back_, true);
   }
 

@@ -68,7 +68,7 @@ void grow(Particle& p, double xi, std::span<double> y) {
   double above = k_infinity;
   double step_size = k_infinity;
   // Quadratic convergence makes the next step round-off below this. Convergence is slower where forces go with a square
-  // root: for a contact that only touches a free centre, or an edge next to pull-off.
+  // root: for an idle contact of a free centre, or an edge next to pull-off.
   const double last_step = !p.centre().is_free() && !peels_anywhere(p) ? k_last_step : 2.0 * k_epsilon;
   for (int iteration = 0; iteration < k_most_steps; ++iteration) {
     move_walls(p, xi, y);

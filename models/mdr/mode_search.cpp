@@ -88,7 +88,7 @@ void ModeSearch::begin(const Particle& particle) {
   validity_.reset();
 }
 
-void ModeSearch::close_with(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log) {
+void ModeSearch::touch_under_force(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log) {
   carry_to_support(p_, xi, y, log);
   balance_touch(p_, i, true, log);
 }
@@ -103,7 +103,7 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
   bool others_fired = false;
   std::optional<DomainEnd> end;
   for (const Guard& guard : fired) {
-    if (is_moot(guard, now)) continue;
+    if (is_void(guard, now)) continue;
     switch (guard.kind) {
       case k_growth_on:
       case k_growth_off:
@@ -134,7 +134,7 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
   return end;
 }
 
-bool ModeSearch::let_go_of_pulling_walls(double xi, std::span<double> y, std::vector<Event>& log) {
+bool ModeSearch::separate_pulling_walls(double xi, std::span<double> y, std::vector<Event>& log) {
   p_.evaluated(xi, y);
   const CentreVector softest = centre_stiffness(p_).direction.normalized();
   bool any = false;
@@ -149,7 +149,7 @@ bool ModeSearch::let_go_of_pulling_walls(double xi, std::span<double> y, std::ve
 
 /// True for a guard that has fired without a transition to apply: another transition at this instant has made it void,
 /// or round-off has fired it.
-bool ModeSearch::is_moot(const Guard& guard, const Motion& now) const {
+bool ModeSearch::is_void(const Guard& guard, const Motion& now) const {
   // The guard of intersecting caps carries the number of their pair, not of a contact class.
   if (guard.kind == k_caps) return false;
   const std::size_t i = guard.place();
@@ -284,7 +284,7 @@ bool ModeSearch::is_extremum(const Guard& guard, const Motion& now) const {
 void ModeSearch::resolve(double xi, std::span<double> y, std::vector<Event>& log) {
   const bool was_growing = p_.mode.is_growing;
   made_.clear();
-  runs_away_ = false;
+  radius_diverges_ = false;
   p_.mode.loads_on.assign(p_.size(), false);
   has_resumed_.assign(p_.size(), false);
   if (!has_jumped_) balance_anew(xi, y, log);
@@ -296,7 +296,7 @@ void ModeSearch::resolve(double xi, std::span<double> y, std::vector<Event>& log
   for (std::size_t round = 0;; ++round) {
     if (round == most_rounds()) {
       // Growth that would run away in one of the modes alternates with the branch of a contact.
-      if (runs_away_) throw DomainError(Limit::free_surface_used_up);
+      if (radius_diverges_) throw DomainError(Limit::free_surface_used_up);
       if (has_resumed_ == p_.mode.loads_on) throw DomainError(Limit::no_consistent_regimes);
       // Contacts that start to unload at their largest overlap, and would then load beyond it, alternate without end.
       // Searches again from the first state and keeps them on the loading branch.
@@ -329,7 +329,7 @@ bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log
     return true;
   }
   const Motion now = p_.motion(p_.mode.is_growing);
-  runs_away_ = runs_away_ || (p_.mode.is_growing && now.free_surface(y[k_radius]) < k_least_slope);
+  radius_diverges_ = radius_diverges_ || (p_.mode.is_growing && now.free_surface(y[k_radius]) < k_least_slope);
   bool has_changed = false;
   std::vector<std::size_t> just_loaded;
   for (std::size_t i = 0; i < p_.size(); ++i) {
@@ -344,7 +344,7 @@ bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log
     separate(*weakest_contact(p_), y, log);
   }
   // A wall that a force presses from the start fires no guard, so the walls that balance it close here.
-  for (const std::size_t i : just_loaded) close_with(i, xi, y, made_);
+  for (const std::size_t i : just_loaded) touch_under_force(i, xi, y, made_);
   // If a contact has pulled off, the others find a new balance.
   if (!has_jumped_ && p_.law().adheres()) balance_anew(xi, y, log);
   if (!has_jumped_ && !p_.law().adheres()) move_walls(p_, xi, y);
@@ -569,8 +569,8 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
   }
   if (p_.law().adheres()) return resolve_edge(i, xi, y, now, tends.is_carried, log);
   // A contact that no force presses during the whole step may end at once; it does not wait for growth to open it.
-  const bool is_let_go = p_.is_force_controlled(i) && p_.drive(i).start() <= 0.0 && p_.drive(i).end() <= 0.0;
-  if ((tends.opens || is_let_go) && contact_guard(p_, k_lost, i, xi, overlap) <= k_zero_guard) {
+  const bool is_unloaded = p_.is_force_controlled(i) && p_.drive(i).start() <= 0.0 && p_.drive(i).end() <= 0.0;
+  if ((tends.opens || is_unloaded) && contact_guard(p_, k_lost, i, xi, overlap) <= k_zero_guard) {
     p_.lose(i);
     log.push_back(event_of("contact-lost", i));
     return true;

@@ -33,10 +33,10 @@ class ModeSearch {
                                  std::vector<Event>& log);
   /// Closes the nearest walls together with contact i, which a force begins to press. A loose particle moves to walls
   /// that support that force.
-  void close_with(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log);
+  void touch_under_force(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log);
   /// Opens the contacts of the walls that a prescribed force pulls away, along the softest direction of the centre.
   /// @return false if there are none
-  bool let_go_of_pulling_walls(double xi, std::span<double> y, std::vector<Event>& log);
+  bool separate_pulling_walls(double xi, std::span<double> y, std::vector<Event>& log);
   /// Finds the consistent mode, and moves centre and walls to equilibrium in it.
   /// @throws std::domain_error if no mode is consistent, or the equations end here
   void resolve(double xi, std::span<double> y, std::vector<Event>& log);
@@ -64,7 +64,7 @@ class ModeSearch {
     std::size_t made = 0;
   };
 
-  [[nodiscard]] bool is_moot(const Guard& guard, const Motion& now) const;
+  [[nodiscard]] bool is_void(const Guard& guard, const Motion& now) const;
   bool apply_transition(const Guard& guard, std::span<double> y, const Motion& now, std::vector<Event>& log);
   [[nodiscard]] std::optional<DomainEnd> end_of(const Guard& guard, ContactCaps& caps, std::vector<Event>& log);
   [[nodiscard]] bool is_extremum(const Guard& guard, const Motion& now) const;
@@ -101,7 +101,7 @@ class ModeSearch {
   /// A force-controlled contact has just yielded: its force has jumped, and its wall has not given way yet. The volume
   /// balance is frozen in this state; when the wall gives way the radius follows, and may fall a little.
   bool has_jumped_ = false;
-  bool runs_away_ = false;  ///< the radius would run away in a mode tried in this search
+  bool radius_diverges_ = false;  ///< the radius would run away in a mode tried in this search
   std::optional<Diagnostic> validity_;
 };
 

@@ -49,7 +49,7 @@ std::vector<Unknown> Setup::unknowns() const {
                     .scale = reach,
                     .is_implicitly_algebraic = true,
                     .is_dependent = true,
-                    .may_rest = true});
+                    .may_be_undetermined = true});
   }
   for (const ContactClass& c : classes) {
     if (c.takes_force) list.push_back({c.name, Unknown::Kind::algebraic, reach, true, true});

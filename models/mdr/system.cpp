@@ -75,7 +75,7 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
       // A contact that touches already fires no guard when a force begins to press it: the nearest walls close here.
       const contacts::WallDrive& drive = now_.particle.drive(i);
       const bool begins_to_press = now_.particle.is_force_controlled(i) && drive.start() == 0.0 && drive.end() > 0.0;
-      if (begins_to_press && search_.particle().branch(i).touches()) search_.close_with(i, 0.0, y, log);
+      if (begins_to_press && search_.particle().branch(i).touches()) search_.touch_under_force(i, 0.0, y, log);
     }
     search_.resolve(0.0, y, log);
   });
@@ -122,7 +122,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     now_.validity = validity;
     decide_mode(y, [&] {
       end = search_.apply(fired_, xi, y, now_.caps, log);
-      if (!search_.let_go_of_pulling_walls(xi, y, log)) throw;
+      if (!search_.separate_pulling_walls(xi, y, log)) throw;
       if (!end) search_.resolve(xi, y, log);
     });
   }

@@ -9,9 +9,9 @@ Yielding::Yielding(const Law& law)
     : softening(packing::softening(law)), full_plasticity(packing::full_plasticity(law)) {}
 
 void Yielding::pass(const ControlledBranch& branch, double value, std::vector<Event>& log) {
-  const auto take = [&](bool& is_passed, double place, std::string_view name) {
-    if (is_passed || place > branch.range().end) return;
-    if (place > branch.range().begin && branch.value_at(place) > value) return;
+  const auto take = [&](bool& is_passed, double threshold, std::string_view name) {
+    if (is_passed || threshold > branch.range().end) return;
+    if (threshold > branch.range().begin && branch.value_at(threshold) > value) return;
     is_passed = true;
     log.push_back({name});
   };
@@ -21,7 +21,7 @@ void Yielding::pass(const ControlledBranch& branch, double value, std::vector<Ev
 
 void Guards::arm(const ControlledBranch& branch, const Ramp& ramp, Mode mode, const Yielding& yielding, double value) {
   guards_.clear();
-  places_.clear();
+  values_.clear();
   if (ramp.direction() > 0) {
     arm_jamming(branch, ramp, mode);
     // A loose packing reaches strains that a jammed one has, but not its states.
@@ -32,11 +32,11 @@ void Guards::arm(const ControlledBranch& branch, const Ramp& ramp, Mode mode, co
 }
 
 /// Adds a guard at a value of the controlled quantity, if the ramp leads there.
-void Guards::add(const Ramp& ramp, GuardKind kind, std::string_view name, double place) {
+void Guards::add(const Ramp& ramp, GuardKind kind, std::string_view name, double value) {
   const int d = ramp.direction();
-  if (!(d > 0 ? place <= ramp.end : place >= ramp.end)) return;
+  if (!(d > 0 ? value <= ramp.end : value >= ramp.end)) return;
   guards_.push_back({kind, 0, d, name, name.empty()});
-  places_.push_back(place);
+  values_.push_back(value);
 }
 
 /// Arms the guards before integration: the packing jams, its branch begins, and its closed start ends.
@@ -97,7 +97,7 @@ void Guards::arm_compaction(const ControlledBranch& branch, const Ramp& ramp, co
 
 void Guards::distances(const Ramp& ramp, double xi, std::span<double> values) const {
   const double length = std::abs(ramp.rate());
-  for (std::size_t g = 0; g < guards_.size(); ++g) values[g] = (ramp.value(xi) - places_[g]) / length;
+  for (std::size_t g = 0; g < guards_.size(); ++g) values[g] = (ramp.value(xi) - values_[g]) / length;
 }
 
 }  // namespace monograin::packing

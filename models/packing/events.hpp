@@ -39,7 +39,7 @@ class Guards {
   void arm(const ControlledBranch& branch, const Ramp& ramp, Mode mode, const Yielding& yielding, double value);
   [[nodiscard]] std::span<const Guard> list() const noexcept { return guards_; }
   /// Value of the controlled quantity at which a guard lies.
-  [[nodiscard]] double place(std::size_t guard) const { return places_[guard]; }
+  [[nodiscard]] double value(std::size_t guard) const { return values_[guard]; }
   /// Distances from the guards at an instant, over the length of the ramp.
   void distances(const Ramp& ramp, double xi, std::span<double> values) const;
 
@@ -47,10 +47,10 @@ class Guards {
   void arm_jamming(const ControlledBranch& branch, const Ramp& ramp, Mode mode);
   void arm_loosening(const ControlledBranch& branch, const Ramp& ramp, Mode mode);
   void arm_compaction(const ControlledBranch& branch, const Ramp& ramp, const Yielding& yielding, double value);
-  void add(const Ramp& ramp, GuardKind kind, std::string_view name, double place);
+  void add(const Ramp& ramp, GuardKind kind, std::string_view name, double value);
 
   std::vector<Guard> guards_;
-  std::vector<double> places_;
+  std::vector<double> values_;
 };
 
 }  // namespace monograin::packing

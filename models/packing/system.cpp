@@ -207,7 +207,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
         yielding_.is_full = true;
         break;
       case is_full:
-        if (ramp_.end > guards_.place(g)) end = DomainEnd{event, {Limit::pores_closed, -1, "packing fraction", 1.0}};
+        if (ramp_.end > guards_.value(g)) end = DomainEnd{event, {Limit::pores_closed, -1, "packing fraction", 1.0}};
         break;
       case ends:
         end = branch_.domain_end();

@@ -43,7 +43,8 @@ struct Unknown {
   /// True for a dependent unknown: complete() and its row of residual() give it explicitly as a function of xi and the
   /// other unknowns. It has no integration error of its own, and may be singular in xi where the others are smooth.
   bool is_dependent = false;
-  bool may_rest = false;   ///< in some modes no equation determines it; it then keeps its value
+  /// In some modes no equation determines the unknown; it then keeps its value.
+  bool may_be_undetermined = false;
   double sum_scale = 0.0;  ///< magnitude of sums that contain it: their round-off bounds its absolute tolerance below
 };
 

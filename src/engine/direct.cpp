@@ -41,7 +41,7 @@ class Direct final : public EventLocator {
     if (found != unknowns.end() && system.has_energies())
       quadrature_ = static_cast<std::size_t>(found - unknowns.begin());
     has_dependent_unknowns_ = system.has_dependent_unknowns();
-    may_rest_ = std::ranges::any_of(unknowns, &Unknown::may_rest);
+    may_be_undetermined_ = std::ranges::any_of(unknowns, &Unknown::may_be_undetermined);
     trial_.resize(unknowns.size());
     branch_reach_.resize(unknowns.size());
     rates_.resize(unknowns.size());
@@ -165,7 +165,7 @@ class Direct final : public EventLocator {
     system_.solve(xi, y);
   }
 
-  [[nodiscard]] bool goes_from_nodes() const noexcept { return may_rest_ && is_closed_; }
+  [[nodiscard]] bool goes_from_nodes() const noexcept { return may_be_undetermined_ && is_closed_; }
 
   void state_ahead(double xi, std::span<double> y) override { system_.solve(xi, y); }
 
@@ -477,7 +477,7 @@ class Direct final : public EventLocator {
   bool has_panels_ = false;
   Panel panel_;
   bool has_dependent_unknowns_ = false;
-  bool may_rest_ = false;  ///< some unknown may be determined by no equation
+  bool may_be_undetermined_ = false;  ///< some unknown may be determined by no equation
   double segment_begin_ = 0.0;
   int refusals_ = 0;                     ///< tiny pieces of this segment in which the equations ended
   double length_ = 0.0;                  ///< length of the next piece

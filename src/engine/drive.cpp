@@ -335,8 +335,8 @@ class Drive {
     }
   }
 
-  /// Solves for the state at the end of the step. An event may leave a remainder that is round-off, but a contact may
-  /// be equally shallow. Returns whether there was a remainder.
+  /// Solves for the state at the end of the step. An event may leave a remainder that is round-off, but an overlap
+  /// may be as small. Returns whether there was a remainder.
   bool solve_remainder() {
     if (!(clock_.duration > 0.0 && xi_ < 1.0)) return false;
     change_state([this](std::span<double> y) {

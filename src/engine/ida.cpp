@@ -24,7 +24,8 @@ struct IdaDeleter {
 };
 using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
-constexpr double k_slave_tolerance = 1e-4;  // of dependent unknowns: loose, but small enough for difference quotients
+constexpr double k_dependent_tolerance =
+    1e-4;  // of dependent unknowns: loose, but small enough for difference quotients
 // Share of a step's tolerance that the corrector may leave as an error: k_left_by_corrector, or up to
 // k_most_left_by_corrector (the library's own) if round-off leaves more than the former. With the library's share, the
 // differences of many steps show nothing but these errors: the order stays low, and steps do not become longer.
@@ -50,7 +51,7 @@ class Ida final : public Integrator {
     N_VConst(0.0, dy_.get());
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
       // A dependent unknown has no error of its own: it has little weight, and is completed wherever it is used.
-      const double absolute = unknowns[k].is_dependent ? k_slave_tolerance : of_step(tolerances).atol;
+      const double absolute = unknowns[k].is_dependent ? k_dependent_tolerance : of_step(tolerances).atol;
       view(least_atol_.get())[k] = std::max(absolute * unknowns[k].scale, k_above_round_off * unknowns[k].sum_scale);
       view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
     }

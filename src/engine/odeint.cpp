@@ -23,7 +23,7 @@ namespace odeint = boost::numeric::odeint;
 
 // First step of the linearly implicit method if rates may be singular: its difference quotients do not show a
 // singularity, and now and then two errors cancel in its estimate. The error is proportional to the square of the step.
-constexpr double k_first_step_of_slaves = 1e-9;
+constexpr double k_first_step_with_dependents = 1e-9;
 constexpr double k_smallest_step = 2e-3;  // over least_progress(): still above the round-off of xi
 constexpr int k_most_tries = 500;         // for one step
 // Largest difference between the two sequences of the midpoint rule, over the tolerance of a step, if both approximate
@@ -373,7 +373,7 @@ class RosenbrockStepper final : public Stepper {
     start_[size_] = xi;
     method_.begin(start_.data());
     begin_ = end_ = xi;
-    step_ = std::min(form_.has_dependent_unknowns() ? k_first_step_of_slaves : k_first_step, 1.0 - xi);
+    step_ = std::min(form_.has_dependent_unknowns() ? k_first_step_with_dependents : k_first_step, 1.0 - xi);
   }
 
   void correct(std::span<const double> z) override {

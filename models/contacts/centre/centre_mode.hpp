@@ -93,7 +93,7 @@ class CentreMode {
 
   // --- the mode
 
-  /// Takes up the ramps of a step, sets how far ahead the modes of the step are decided, and carries a loose particle
+  /// Reads the ramps of a step, sets how far ahead the modes of the step are decided, and carries a loose particle
   /// to walls that can bear the prescribed forces.
   void begin_step(const Law& law, std::span<const Contact> contacts, std::span<double> y) {
     fastest_wall_ = 0.0;

@@ -145,7 +145,7 @@ double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role>
 
 /// Raises the stiffness of contacts that bear less than a force to their stiffness under it: at first touch they have
 /// none. Contacts beyond the end of their branch, where the force may be constant, get their secant stiffness.
-void FreeCentre::lend_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force) {
+void FreeCentre::regularize_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force) {
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0)) continue;
     double& stiffness = loads_[lines_.line_of(i)].stiffness;
@@ -167,7 +167,7 @@ FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const
   sum_up(walls, roles, c);
   for (int k = 0; k < k_most_steps; ++k) {
     const Vector net = net_force();
-    lend_stiffness(walls, roles, net.norm());
+    regularize_stiffness(walls, roles, net.norm());
     Vector borne = net;
     Vector wanted = Vector::Zero();
     const auto quick = step_of_all(net);

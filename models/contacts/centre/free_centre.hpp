@@ -104,7 +104,7 @@ class FreeCentre {
                               const Vector& c) const;
   [[nodiscard]] double share_of_step(const CentreWalls& walls, std::span<const Role> roles, const Vector& c,
                                      const Vector& step);
-  void lend_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force);
+  void regularize_stiffness(const CentreWalls& walls, std::span<const Role> roles, double force);
   [[nodiscard]] Vector balance(const CentreWalls& walls, std::span<const Role> roles, Vector c);
   [[nodiscard]] Matrix held_directions(const CentreWalls& walls, double least_overlap);
   [[nodiscard]] Vector with_loose_directions(const CentreWalls& walls, std::span<const Role> roles, const Vector& rest,

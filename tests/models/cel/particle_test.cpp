@@ -121,7 +121,7 @@ struct RandomCase {
     motion.evaluate(particle, 0.0, y);
     std::vector<double> dy(y.size());
     std::ranges::copy(motion.rates().first(particle.layout().core()), dy.begin());
-    particle.let_core_flow(dy);
+    particle.write_core_rates(dy);
     return dy;
   }
 

@@ -15,7 +15,7 @@ namespace {
 struct Guarded {
   explicit Guarded(const Ramp& axial, Settings settings = unit_settings())
       : particle(settings, die()), guards(die()), y(3, 0.0) {
-    particle.take_up(std::vector<Ramp>{axial, {0.0, 0.0}}, y);
+    particle.set_ramps(std::vector<Ramp>{axial, {0.0, 0.0}}, y);
     particle.mode.is_closed = {1, 1};
     particle.solve(0.0, y);
     particle.evaluate(0.0, y);
@@ -102,7 +102,7 @@ TEST(NonlocalGuards, StopAStepThatBeginsAtALimitAndLeadsBeyond) {
     Particle particle(settings, wall);
     GuardSet guards(wall);
     std::vector<double> y(2, 0.0);
-    particle.take_up(std::vector<Ramp>{{1.0, target}}, y);
+    particle.set_ramps(std::vector<Ramp>{{1.0, target}}, y);
     particle.mode.is_closed = {1};
     particle.solve(0.0, y);
     particle.evaluate(0.0, y);

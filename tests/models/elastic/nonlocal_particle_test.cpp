@@ -16,7 +16,7 @@ namespace {
 struct Pressed {
   explicit Pressed(const Ramp& axial, Settings settings = unit_settings()) : particle(settings, die()) {
     const double lateral = 0.0;
-    particle.take_up(std::vector<Ramp>{axial, {lateral, lateral}}, y);
+    particle.set_ramps(std::vector<Ramp>{axial, {lateral, lateral}}, y);
     particle.mode.is_closed = {1, 1};
   }
 
@@ -56,10 +56,10 @@ TEST(NonlocalParticle, KeepsItsStateWhenAWallChangesItsControl) {
   const double square = y[0];
   pressed.particle.evaluate_contacts(1.0, y);
   const double force = pressed.particle.contact(0).force;
-  pressed.particle.take_up(std::vector<Ramp>{{force, 2.0 * force, Control::force}, {0.0, 0.0}}, y);
+  pressed.particle.set_ramps(std::vector<Ramp>{{force, 2.0 * force, Control::force}, {0.0, 0.0}}, y);
   EXPECT_NEAR(y[0], std::pow(square, 1.5), 1e-16);
   EXPECT_NEAR(pressed.particle.evaluate(0.0, y)[0], square, 1e-15);
-  pressed.particle.take_up(std::vector<Ramp>{{0.2, 0.1}, {0.0, 0.0}}, y);
+  pressed.particle.set_ramps(std::vector<Ramp>{{0.2, 0.1}, {0.0, 0.0}}, y);
   EXPECT_NEAR(y[0], square, 1e-16);
 }
 
@@ -97,7 +97,7 @@ TEST(NonlocalParticle, SeesTheSideToWhichATouchingContactGoes) {
 TEST(NonlocalParticle, PassesTheBeginningOfAForceThatContactsAloneBear) {
   Particle particle(unit_settings(Centre::free), single_walls(simple()));
   std::vector<double> y(particle.work_place() + 1, 0.0);
-  particle.take_up(std::vector<Ramp>{{0.0, 0.1, Control::force}, {0.0, 0.0}}, y);
+  particle.set_ramps(std::vector<Ramp>{{0.0, 0.1, Control::force}, {0.0, 0.0}}, y);
   const double later = particle.leave_singularity(0.0, y);
   EXPECT_EQ(later, k_ahead);
   EXPECT_GT(y[0], 0.0);
@@ -112,9 +112,9 @@ TEST(NonlocalSetup, TakesItsScalesFromTheProgram) {
     return scales_of(settings, die(), contacts);
   };
   EXPECT_EQ(scales().depth, 0.3);
-  EXPECT_FALSE(scales().is_shallow);
+  EXPECT_FALSE(scales().is_below_resolution);
   settings.reach.displacement = 1e-13;
-  EXPECT_TRUE(scales().is_shallow);
+  EXPECT_TRUE(scales().is_below_resolution);
   settings.reach.displacement = 2.0;
   EXPECT_EQ(scales().depth, 1.0);
   EXPECT_FALSE(scales().greatest_approach.has_value());

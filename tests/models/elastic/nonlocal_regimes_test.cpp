@@ -19,7 +19,7 @@ struct Start {
     y.assign(particle.work_place() + 1, 0.0);
     y[0] = first.start;
     y[1] = second.start;
-    particle.take_up(std::vector<Ramp>{first, second}, y);
+    particle.set_ramps(std::vector<Ramp>{first, second}, y);
     particle.solve(0.0, y);
     particle.evaluate(0.0, y);
   }

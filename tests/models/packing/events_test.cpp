@@ -58,7 +58,7 @@ TEST(PackingEvents, LooseningPassesTheClosedStartFirst) {
   EXPECT_TRUE(armed(branch, back, Mode::unjammed, Yielding(law)).empty());
 }
 
-TEST(PackingEvents, GuardsVanishAtTheirPlaces) {
+TEST(PackingEvents, GuardsVanishAtTheirValues) {
   const Law law = make_law(published(1.0));
   const ControlledBranch branch(law, Control::packing_fraction);
   const Ramp ramp{0.8, 1.0, Control::packing_fraction};
@@ -66,7 +66,7 @@ TEST(PackingEvents, GuardsVanishAtTheirPlaces) {
   guards.arm(branch, ramp, Mode::jammed, Yielding(law), ramp.start);
   std::vector<double> values(guards.list().size());
   for (std::size_t g = 0; g < values.size(); ++g) {
-    guards.distances(ramp, (guards.place(g) - ramp.start) / ramp.rate(), values);
+    guards.distances(ramp, (guards.value(g) - ramp.start) / ramp.rate(), values);
     EXPECT_NEAR(values[g], 0.0, 1e-14);
     guards.distances(ramp, 0.0, values);
     EXPECT_LT(values[g], 0.0);
