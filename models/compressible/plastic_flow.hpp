@@ -41,7 +41,7 @@ struct PlasticFlow {
 /// Flow with another yield function than that of the phase's branch.
 [[nodiscard]] PlasticFlow plastic_flow(const Phase& phase, const Response& now, const Yield& yield);
 
-/// What the flow does to the balance of energy, over the strength and the magnitude of the flow's strains.
+/// Contributions of the flow to the balance of energy, over the strength and the magnitude of the flow's strains.
 struct FlowEnergy {
   double work = 0.0;         ///< rate of the plastic work
   double dissipation = 0.0;  ///< the part of it that stiffening does not store

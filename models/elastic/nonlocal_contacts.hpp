@@ -43,7 +43,7 @@ struct Formulation {
   Influence influence = Influence::half_space;
 };
 
-/// Whether the centre is fixed, or moves until the forces balance. Even a free centre does not move in directions in
+/// Motion of the centre: fixed, or to where the forces balance. Even a free centre does not move in directions in
 /// which the forces of every class balance by symmetry.
 enum class Centre { fixed, free };
 
@@ -59,8 +59,8 @@ struct ContactState {
 
 // Tolerances that several searches share.
 
-/// Contacts shallower than this, over the walls' displacements or the deepest contact, do not show which ones will
-/// support the centre.
+/// Contacts with a smaller overlap than this, over the walls' displacements or the deepest contact, do not show which
+/// ones will support the centre.
 inline constexpr double k_unloaded = 1e-6;
 inline constexpr double k_touching = 1e-10;  ///< gap at which walls begin to bear, over the walls' displacements
 

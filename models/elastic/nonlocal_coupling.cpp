@@ -21,7 +21,7 @@ using std::numbers::pi;
 /// C = (1 + nu)/(4 pi), the unit of all compliances.
 double unit_compliance(double nu) noexcept { return (1.0 + nu) / (4.0 * pi); }
 
-/// @param rounding  relative round-off of the integrand; no refinement gets below it
+/// @param round_off  relative round-off of the integrand; no refinement gets below it
 double integral(const auto& f, double begin, double end, double round_off = 0.0) {
   // The tolerance bounds the error estimate of the embedded Gauss rule; the value is exact to round-off long before.
   const double tolerance = std::max(1e-12, round_off);

@@ -22,7 +22,7 @@ constexpr double k_guard_at_touch = 1e-12;
 // Largest contact radius over R0 with all terms. Approach and force depend on 1 - a, of which a has ever fewer digits;
 // beyond this radius, the approach has less than eleven.
 constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
-// Contacts shallower than this, over the deepest, support a free centre too softly for an integrator.
+// Contacts with a smaller overlap than this, over the deepest, support a free centre too softly for an integrator.
 constexpr double k_idle = 1e-6;
 
 /// Depth of the deepest contact that the program asks for, over R0; 0 if it asks for none.

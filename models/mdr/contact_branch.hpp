@@ -96,9 +96,9 @@ struct ContactBranch {
   /// Magnitude of the contact's stiffness; for a peeling edge, the stiffness that the contact would have if it stuck.
   [[nodiscard]] double unpeeled_stiffness(const ContactLaw& law, double r, const Contact& now) const;
 
-  /// True if an elastic contact yields once it is deep enough. At its largest overlap it always may. Below, it may if
-  /// the largest overlap moves with the radius: growth can press the contact deeper than it has ever been while its
-  /// wall goes back, or leave it a largest overlap that it never had.
+  /// True if an elastic contact can yield. At its largest overlap it always can. Below, it can if the largest overlap
+  /// is counted with the growth of the radius: growth can then press the contact deeper than ever while its wall
+  /// retreats.
   [[nodiscard]] bool may_yield(const ContactLaw& law) const noexcept;
   /// Guard: >= 0 where the contact yields.
   /// @param least  overlap below which no contact yields

@@ -1,4 +1,4 @@
-/// What counts as nothing: by these numbers every room decides that a value is zero or that two values are equal.
+/// Tolerances by which every room decides that a value is zero, or that two values are equal.
 #pragma once
 
 #include <limits>

@@ -132,8 +132,9 @@ class Direct final : public EventLocator {
     }
   };
 
-  /// Tolerance of a piece's series, over the work: rtol times the larger of rtol and a share. Next to a singularity of
-  /// the work, as at a first touch, the error is up to a hundred times that.
+  /// Tolerance of a piece's series, over the work: rtol times k_share, or the square of an rtol above k_share, but no
+  /// less than round-off. Next to a singularity of the work, as at a first touch, the error is up to a hundred times
+  /// that.
   [[nodiscard]] static double work_accuracy_of(double rtol) noexcept {
     constexpr double k_share = 1e-3;
     return std::max(k_round_off_of_work, rtol * std::max(rtol, k_share));

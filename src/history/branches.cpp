@@ -232,8 +232,8 @@ struct MeetingLines {
   double squares = k_infinity;  ///< sum of the squared distances of all rows of the window
 };
 
-/// Where two straight lines meet that fit the rows of both sides best, whichever of the rows next to the turn belongs
-/// to which.
+/// Intersection of the two straight lines that fit the rows before and after a turn best. Every row next to the turn is
+/// tried as the last one of the first line.
 [[nodiscard]] MeetingLines meeting_lines(std::span<const double> x, const WindowOfRows& window, std::size_t turn) {
   const std::size_t first = window.first();
   const std::size_t last = window.last();
@@ -285,7 +285,7 @@ struct Hold {
   return hold;
 }
 
-/// Whether a hold lies at the extreme x as nearly as its rows scatter, and is level.
+/// True if a hold is level and lies at the extreme x, within the scatter of its rows.
 [[nodiscard]] bool is_at_turn(std::span<const double> x, const WindowOfRows& window, const Hold& hold, std::size_t turn,
                               double noise) {
   const Line line = window.line(hold.begin, hold.end);
@@ -354,7 +354,7 @@ struct Hold {
   return largest > 0.0 ? difference / largest : 0.0;
 }
 
-/// Where a curve without noise turns, in numbers of rows.
+/// Turn of a curve without noise, in numbers of rows.
 struct PlaceOfTurn {
   std::size_t last_row = 0;  ///< of the branch that ends there
   double row = 0.0;

@@ -44,7 +44,7 @@ struct Excursion {
 /// the place of that of the differences. 0 if there are less than three such paths.
 [[nodiscard]] double noise_in(std::span<const double> x);
 
-/// Where x turns, or begins or ends.
+/// Point at which x turns, or begins or ends.
 struct Turn {
   std::size_t last_row = 0;  ///< of the branch that ends there
   double x = 0.0;

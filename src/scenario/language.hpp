@@ -110,7 +110,7 @@ struct StepForm {
 inline constexpr int k_most_points = 1'000'000;
 inline constexpr double k_most_rows = 2e7;        ///< of a history, events not counted
 inline constexpr int k_most_steps = 100'000;      ///< of all programs, cycles written out
-inline constexpr int k_most_walls = 200;          ///< this many take mdr with a free centre a quarter of a minute
+inline constexpr int k_most_walls = 200;          ///< limits the time of a run, which grows like the cube
 inline constexpr int k_most_columns = 1'000'000;  ///< of a table of numbers
 inline constexpr double k_least_normal = 1e-6;    ///< least magnitude of a normal's largest component
 inline constexpr double k_greatest_normal = 1e6;

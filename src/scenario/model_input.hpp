@@ -11,8 +11,8 @@ namespace monograin {
 /// Input of the model. It refers to the scenario, which has to outlive it.
 [[nodiscard]] ModelInput model_input(const CheckedScenario& scenario);
 
-/// What a preset lacks to run on its own, with the model's default options: the keys that it does not give, or the
-/// first objection to its values. Empty: nothing.
+/// Reason why a preset cannot run on its own, with the model's default options: the keys that it does not give, or the
+/// first objection to its values. Empty if it can.
 [[nodiscard]] std::string shortfall_of(const Preset& preset, const Model& model);
 
 }  // namespace monograin

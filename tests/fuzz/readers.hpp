@@ -1,4 +1,4 @@
-/// What reads text that a user wrote, fed with any bytes.
+/// Readers of text that a user wrote, fed with any bytes.
 #pragma once
 
 #include <string_view>

@@ -24,7 +24,7 @@ std::size_t take_while(std::string_view text, std::size_t from, bool (*belongs)(
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Whether the message begins with origin:line:column.
+/// True if the message begins with origin:line:column.
 bool begins_with_a_place(std::string_view message) {
   constexpr std::string_view origin = "die.toml:";
   if (!message.starts_with(origin)) return false;
@@ -104,7 +104,7 @@ std::vector<Assignment> assignments_in(const Lines& lines) {
   return found;
 }
 
-/// Whether the value is a text such as "10 mm".
+/// True if the value is a text such as "10 mm".
 bool has_unit(std::string_view value) {
   return value.size() > 2 && value.front() == '"' && is_digit(value[1]) && value.find(' ') != std::string_view::npos;
 }

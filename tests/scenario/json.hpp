@@ -11,7 +11,7 @@ namespace monograin {
 /// None where the text is not TOML. NaN and infinity stay what they are.
 [[nodiscard]] std::optional<nlohmann::json> toml_as_json(std::string_view text);
 
-/// Whether the schema of scenarios accepts the value.
+/// True if the schema of scenarios accepts the value.
 [[nodiscard]] bool schema_accepts(const nlohmann::json& value);
 
 }  // namespace monograin

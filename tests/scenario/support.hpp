@@ -1,4 +1,4 @@
-/// What the tests of the scenario language share.
+/// Shared by the tests of the scenario language.
 #pragma once
 
 #include <filesystem>

@@ -33,7 +33,7 @@ void expect_same(const CheckedScenario& one, const CheckedScenario& other) {
   }
 }
 
-/// What a file with these overrides says.
+/// Scenario of a file with these overrides.
 CheckedScenario written(const ScenarioSource& source, std::span<const std::string> keys,
                         std::span<const double> numbers) {
   std::vector<std::string> overrides;
