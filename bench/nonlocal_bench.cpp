@@ -9,10 +9,10 @@
 
 #include <benchmark/benchmark.h>
 
-#include "elastic/nonlocal_contacts.hpp"
-#include "elastic/nonlocal_coupling.hpp"
-#include "elastic/nonlocal_equilibrium.hpp"
-#include "elastic/nonlocal_rates.hpp"
+#include "nonlocal/contacts.hpp"
+#include "nonlocal/coupling.hpp"
+#include "nonlocal/equilibrium.hpp"
+#include "nonlocal/rates.hpp"
 
 namespace monograin::nonlocal {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "elastic/line_contact.hpp"
-#include "elastic/nonlocal_coupling.hpp"
+#include "nonlocal/coupling.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {

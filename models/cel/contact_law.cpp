@@ -7,7 +7,7 @@
 
 #include "cel/constants.hpp"
 #include "elastic/hertz.hpp"
-#include "elastic/nonlocal_coupling.hpp"
+#include "nonlocal/coupling.hpp"
 
 namespace monograin::cel {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "cel/constants.hpp"
 #include "elastic/hertz.hpp"
-#include "elastic/nonlocal_coupling.hpp"
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
+#include "nonlocal/coupling.hpp"
 
 namespace monograin::cel::contact_law_test {
 namespace {

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "elastic/hertz.hpp"
-#include "elastic/nonlocal_coupling.hpp"
 #include "models/accuracy.hpp"
 #include "models/cel/cases.hpp"
+#include "nonlocal/coupling.hpp"
 #include "scenario/scenario.hpp"
 #include "support/refusal.hpp"
 #include "support/test_run.hpp"

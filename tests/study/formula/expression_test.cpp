@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "elastic/nonlocal_coupling.hpp"
+#include "nonlocal/coupling.hpp"
 
 namespace monograin::expression_test {
 namespace {

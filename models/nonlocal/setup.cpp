@@ -1,0 +1,85 @@
+#include "nonlocal/setup.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "contacts/centre/centre_lines.hpp"
+#include "contacts/columns.hpp"
+#include "system/resolution.hpp"
+
+namespace monograin::nonlocal {
+namespace {
+
+constexpr std::array<std::string_view, 2> k_regime_words{"open", "elastic"};
+
+// Touch tolerance over the program's reach: smaller distances are round-off of the surface's position.
+constexpr double k_touch = 1e-13;
+// Touch tolerance of a free centre, over the deepest contact: its s has the forces' round-off to the power 2/3.
+constexpr double k_touch_of_free_centre = 1e-9;
+// Value of a contact's guard at the touch tolerance, large enough that no integrator takes a wall at rest for a root.
+constexpr double k_guard_at_touch = 1e-12;
+// Largest contact radius over R0 with all terms. Approach and force depend on 1 - a, of which a has ever fewer digits;
+// beyond this radius, the approach has less than eleven.
+constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
+// Contacts with a smaller overlap than this, over the deepest, support a free centre too softly for an integrator.
+constexpr double k_idle = 1e-6;
+
+/// Depth of the deepest contact that the program asks for, over R0; 0 if it asks for none.
+double greatest_depth(const Settings& settings, const Contacts& contacts) {
+  const double depth = settings.reach.displacement / settings.initial_radius;
+  if (!(settings.reach.force > 0.0)) return depth;
+  const double force = settings.reach.force / settings.force_unit();
+  const double bearable = std::min(force / contacts.composite_modulus(), contacts.law().greatest_force());
+  return std::max(depth, contacts.law().signed_square_under(bearable));
+}
+
+}  // namespace
+
+Scales scales_of(const Settings& settings, std::span<const ContactClass> classes, const Contacts& contacts) {
+  Scales scales;
+  double reach = greatest_depth(settings, contacts);
+  scales.is_below_resolution = reach > 0.0 && reach <= k_resolution;
+  for (const ContactClass& c : classes) reach = std::max(reach, c.gap / settings.initial_radius);
+  if (!(reach > 0.0)) reach = 1.0;
+  // A program may prescribe any displacement, but before R0 a wall is at the centre, or a contact as wide as the
+  // particle.
+  scales.depth = std::min(reach, 1.0);
+  scales.touch = settings.centre == Centre::free ? k_touch_of_free_centre * scales.depth : k_touch * reach;
+  scales.guard_unit = std::min(scales.depth, scales.touch / k_guard_at_touch);
+  scales.idle = k_idle * scales.depth;
+  if (settings.model.terms == Terms::all) {
+    scales.widest = k_widest_of_all_terms;
+    scales.greatest_approach = contacts.law().at(scales.widest * scales.widest).approach;
+  }
+  return scales;
+}
+
+std::vector<Unknown> unknowns_of(std::span<const ContactClass> classes, const Contacts& contacts, double depth) {
+  std::vector<Unknown> unknowns;
+  for (const ContactClass& c : classes) {
+    unknowns.push_back(
+        {c.name, Unknown::Kind::differential, c.takes_force ? std::pow(depth, k_force_power) : depth, true});
+  }
+  for (std::size_t k = 0; k < contacts.free_count(); ++k) {
+    unknowns.push_back({.name = contacts::k_centre_unknowns[k],
+                        .kind = Unknown::Kind::differential,
+                        .scale = depth,
+                        .is_implicitly_algebraic = true,
+                        .may_be_undetermined = true});
+  }
+  unknowns.push_back({"work", Unknown::Kind::quadrature, depth * depth * std::sqrt(depth), false});
+  return unknowns;
+}
+
+std::vector<Observable> observables_of(std::span<const ContactClass> classes, Centre centre) {
+  std::vector<Observable> observables{{"work", "J", {}}, {"stored_energy", "J", {}}, {"margin", "-", {}}};
+  for (const ContactClass& c : classes) {
+    contacts::add_contact_columns(c.name, k_regime_words, observables);
+    observables.push_back({c.name + ".contact_radius_deformed", "m", {}});
+  }
+  if (centre == Centre::free) contacts::add_centre_columns(observables);
+  return observables;
+}
+
+}  // namespace monograin::nonlocal

@@ -1,0 +1,140 @@
+#include "nonlocal/support.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "nonlocal/evasion.hpp"
+#include "reaction_cone.hpp"
+#include "system/resolution.hpp"
+
+namespace monograin::nonlocal {
+namespace {
+
+constexpr double k_small_force = 1e-3;  // prescribed forces below this, over the largest, are balanced by themselves
+constexpr double k_little = 1e-3;       // of the rest of a step: how far ahead forces are evaluated
+
+}  // namespace
+
+bool may_balance(const Contacts& contacts, std::span<const Target> targets, std::span<const double> y, double near) {
+  const auto push_of = [&](std::size_t j) -> Eigen::Vector3d {
+    return contacts.weight(j) * targets[j].value * contacts.arm(j);
+  };
+  double largest = 0.0;
+  for (std::size_t j = 0; j < targets.size(); ++j) {
+    if (targets[j].is_force) largest = std::max(largest, push_of(j).norm());
+  }
+  std::vector<Eigen::Vector3d> others;
+  std::vector<Eigen::Vector3d> unloading;
+  for (std::size_t j = 0; j < targets.size(); ++j) {
+    const Eigen::Vector3d& arm = contacts.arm(j);
+    if (targets[j].is_force || y[j] < -near || !(arm.norm() > k_same_direction)) continue;
+    others.push_back(arm.normalized());
+    if (y[j] > 0.0) unloading.push_back(-others.back());
+  }
+  const auto can_be_borne = [&](bool is_small) {
+    Eigen::Vector3d push = Eigen::Vector3d::Zero();
+    double sum = 0.0;
+    for (std::size_t j = 0; j < targets.size(); ++j) {
+      if (!targets[j].is_force || (push_of(j).norm() < k_small_force * largest) != is_small) continue;
+      push += push_of(j);
+      sum += contacts.weight(j) * targets[j].value;
+    }
+    return push.norm() <= k_round_off * sum || in_reaction_cone(push, others);
+  };
+  if (!can_be_borne(false)) return false;
+  others.insert(others.end(), unloading.begin(), unloading.end());
+  return can_be_borne(true);
+}
+
+bool is_held_softly(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y, double s) {
+  const Eigen::Index count = as_index(contacts.free_count());
+  Eigen::MatrixXd reach = Eigen::MatrixXd::Zero(count, count);
+  Eigen::MatrixXd hold = reach;
+  for (std::size_t j = 0; j < contacts.class_count(); ++j) {
+    if (y[j] < -s) continue;
+    const auto arm = contacts.arm(j).head(count);
+    const Eigen::MatrixXd along = contacts.weight(j) * arm * arm.transpose();
+    reach += along;
+    // A wall under a force follows the centre.
+    if (y[j] > s && !ramps[j].is_force_controlled()) hold += along;
+  }
+  const auto rank = [](const Eigen::MatrixXd& matrix) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
+    return (solver.eigenvalues().array() > k_same_direction).count();
+  };
+  return rank(hold) < rank(reach);
+}
+
+void CentreSupport::find_redundant(const Contacts& contacts) {
+  if (std::ranges::all_of(walls_, [](const Wall& wall) { return wall.may_bear == wall.did_bear; })) return;
+  obstacles_.clear();
+  for (std::size_t j = 0; j < walls_.size(); ++j) {
+    walls_[j].did_bear = walls_[j].may_bear;
+    walls_[j].is_redundant = false;
+    if (walls_[j].may_bear && contacts.free_count() > 0) obstacles_.push_back({j, contacts.arm(j), 0.0});
+  }
+  for (contacts::Obstacle& wall : obstacles_) {
+    wall.displacement = 1.0;
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    walls_[wall.index].is_redundant = clear_walls(obstacles_, Eigen::Matrix3d::Identity(), centre, k_same_direction);
+    wall.displacement = 0.0;
+  }
+}
+
+void CentreSupport::sort_near(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
+                              double near) {
+  const auto is_force = [&](std::size_t j) { return ramps[j].is_force_controlled(); };
+  sort(
+      contacts,
+      [&](std::size_t j) { return is_force(j) ? y[j] > 0.0 || ramps[j].end != ramps[j].start : y[j] >= -near; },
+      is_force);
+}
+
+bool CentreSupport::sort_loaded(const Contacts& contacts, std::span<const Target> targets, std::span<const double> y,
+                                double gap) {
+  if (contacts.free_count() == 0) return false;
+  const auto squares = y.first(walls_.size());
+  const double deepest = *std::max_element(squares.begin(), squares.end());
+  const double least = deepest > 0.0 ? k_unloaded * deepest : -gap;
+  sort(
+      contacts, [&](std::size_t j) { return targets[j].is_force ? targets[j].value > 0.0 : y[j] >= -std::abs(least); },
+      [&](std::size_t j) { return targets[j].is_force; });
+  bool are_others = false;
+  for (std::size_t j = 0; j < walls_.size(); ++j) {
+    walls_[j].holds = walls_[j].holds && y[j] >= least;
+    are_others = are_others || (!targets[j].is_force && !walls_[j].holds);
+  }
+  return are_others;
+}
+
+bool CentreSupport::may_be_held(Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y,
+                                double near) {
+  sort_near(contacts, ramps, y, near);
+  bool do_some_touch = false;
+  for (std::size_t j = 0; j < walls_.size(); ++j) do_some_touch = do_some_touch || (walls_[j].holds && y[j] <= 0.0);
+  if (!do_some_touch) return false;
+  // Forces are evaluated a little later, because they may only begin here. They are not evaluated at the end of the
+  // step, where the remaining ones may point in the opposite direction.
+  const Evaluation& at = contacts.evaluate(y);
+  std::vector<Target> later(walls_.size());
+  for (std::size_t j = 0; j < walls_.size(); ++j) {
+    const bool is_force = ramps[j].is_force_controlled();
+    const double force = std::max(0.0, std::lerp(at.forces[j], ramps[j].end, k_little));
+    later[j] = {.is_force = is_force, .value = is_force ? force : 0.0};
+  }
+  return may_balance(contacts, later, y, near);
+}
+
+Eigen::Matrix3d CentreSupport::unheld_directions(const Contacts& contacts) const {
+  const auto free = as_index(contacts.free_count());
+  Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
+  projector.topLeftCorner(free, free).setIdentity();
+  for (std::size_t j = 0; j < walls_.size(); ++j) {
+    const Eigen::Vector3d along = projector * contacts.arm(j);
+    if (walls_[j].holds && along.norm() > k_same_direction)
+      projector -= along * along.transpose() / along.squaredNorm();
+  }
+  return projector;
+}
+
+}  // namespace monograin::nonlocal
