@@ -9,11 +9,11 @@
 #include <optional>
 
 #include "contacts/centre/obstacles.hpp"
+#include "contacts/centre/reaction_cone.hpp"
 #include "mdr/equilibrium.hpp"
 #include "mdr/guards.hpp"
 #include "mdr/rates.hpp"
 #include "mdr/resolution.hpp"
-#include "reaction_cone.hpp"
 #include "system/limit.hpp"
 #include "system/resolution.hpp"
 

@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "contacts/centre/reaction_cone.hpp"
 #include "nonlocal/evasion.hpp"
-#include "reaction_cone.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::nonlocal {

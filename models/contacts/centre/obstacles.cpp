@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "reaction_cone.hpp"
+#include "contacts/centre/reaction_cone.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::contacts {

@@ -10,8 +10,8 @@
 #include <span>
 
 #include "catalogue.hpp"
+#include "contacts/centre/reaction_cone.hpp"
 #include "history/energy.hpp"
-#include "reaction_cone.hpp"
 #include "scenario/integrators.hpp"
 #include "scenario/model_input.hpp"
 #include "scene/scene.hpp"

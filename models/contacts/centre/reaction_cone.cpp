@@ -1,4 +1,4 @@
-#include "reaction_cone.hpp"
+#include "contacts/centre/reaction_cone.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
