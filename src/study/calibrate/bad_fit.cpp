@@ -61,16 +61,23 @@ std::string_view other_unit(const MeasuredQuantity& quantity, double factor) {
   return found == units.end() ? std::string_view() : found->symbol;
 }
 
+/// Multiplies x with its noise. @param factor  above zero
+void scale_x(Calibration& calibration, double factor) {
+  scale(calibration.x, factor);
+  for (MeasuredCurve& curve : calibration.curves) curve.noise.x *= factor;
+}
+
+/// Multiplies y with its noise. @param factor  above zero
+void scale_y(Calibration& calibration, double factor) {
+  scale(calibration.y, factor);
+  for (double& weight : calibration.weights) weight /= factor;
+  for (MeasuredCurve& curve : calibration.curves) curve.noise.absolute *= factor;
+}
+
 /// Multiplies the measured displacement, with what the machine adds to it.
 void scale_displacement(Calibration& calibration, double factor) {
-  if (calibration.machine_moves_x()) {
-    scale(calibration.x, factor);
-  } else {
-    scale(calibration.y, factor);
-    for (double& weight : calibration.weights) weight /= factor;
-  }
+  (calibration.machine_moves_x() ? scale_x : scale_y)(calibration, factor);
   for (MeasuredCurve& curve : calibration.curves) {
-    if (!calibration.machine_moves_x()) curve.noise.absolute *= factor;
     curve.machine.offset *= factor;
     curve.machine.compliance *= factor;
     for (double& deflection : curve.machine.deflections) deflection *= factor;
@@ -111,11 +118,7 @@ void add_units(const Calibration& calibration, std::vector<Suspicion>& suspicion
       const char* name = quantity == &Calibration::x ? "x" : "y";
       Suspicion suspicion{
           fmt::format("the unit of {}: with {} instead of {}", name, unit, (calibration.*quantity).unit), calibration};
-      scale(suspicion.changed.*quantity, factor);
-      if (quantity == &Calibration::y) {
-        for (double& weight : suspicion.changed.weights) weight /= factor;
-        for (MeasuredCurve& curve : suspicion.changed.curves) curve.noise.absolute *= factor;
-      }
+      (quantity == &Calibration::x ? scale_x : scale_y)(suspicion.changed, factor);
       suspicions.push_back(std::move(suspicion));
     }
   }

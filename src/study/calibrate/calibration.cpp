@@ -14,6 +14,7 @@
 #include "numerics/derivatives.hpp"
 #include "scenario/faults.hpp"
 #include "study/calibrate/bad_fit.hpp"
+#include "study/calibrate/errors_in_x.hpp"
 #include "study/calibrate/fit_notes.hpp"
 #include "study/calibrate/response.hpp"
 #include "study/calibrate/thinning.hpp"
@@ -57,6 +58,7 @@ class Fit {
     for (const MeasuredCurve& curve : calibration.curves) {
       DataPath path = path_through(x_of(calibration, curve));
       std::vector<double> y = path.at_points(y_of(calibration, curve));
+      if (curve.noise.x > 0.0) errors_in_x_.emplace_back(calibration, curve, path);
       responses_.emplace_back(calibration, curve, std::move(path), std::move(y));
     }
     for (std::size_t row = 0; row < calibration.weights.size(); ++row) {
@@ -67,8 +69,9 @@ class Fit {
     for (std::size_t k = 0; k < calibration.free.size(); ++k) {
       if (calibration.free[k].prior && calibration.free[k].prior->is_residual()) priors_.push_back(k);
     }
-    problem_.residual_count = rows_.size() + priors_.size();
-    problem_.plain_count = priors_.size();
+    set_shared_errors();
+    problem_.residual_count = residual_count();
+    problem_.plain_count = residual_count() - rows_.size();
     problem_.loss = calibration.loss;
     problem_.noise = noise_of(calibration);
     problem_.progress = progress;
@@ -82,6 +85,7 @@ class Fit {
         const std::size_t k = priors_[j];
         residuals[rows_.size() + j] = prior_weight_ * calibration_.free[k].prior->deviation(parameters[k]);
       }
+      take_shared_errors(Eigen::Map<Eigen::VectorXd>(residuals.data(), static_cast<Eigen::Index>(residuals.size())));
       return true;
     };
   }
@@ -96,8 +100,8 @@ class Fit {
     if (seeks_prior_weight) prior_weight_ = 0.0;
     auto solution = search_once();
     for (int round = 0; solution && round < k_most_rounds; ++round) {
-      bool has_changed =
-          has_noise_of_fit() && failing(solution->parameters) == responses_.size() && weigh_by_response();
+      bool has_changed = has_noise_of_fit() && failing(solution->parameters) == responses_.size() &&
+                         weigh_by_response(solution->parameters);
       if (seeks_prior_weight) has_changed = weigh_priors(*solution) || has_changed;
       if (!has_changed) break;
       auto next = round == 0 && seeks_prior_weight ? search_once() : minimise_near(problem_, solution->minima);
@@ -110,8 +114,9 @@ class Fit {
   }
 
   [[nodiscard]] bool has_noise_of_fit() const {
-    return std::ranges::any_of(calibration_.curves,
-                               [](const MeasuredCurve& curve) { return curve.noise.relative > 0.0; });
+    return std::ranges::any_of(calibration_.curves, [](const MeasuredCurve& curve) {
+      return curve.noise.relative > 0.0 || curve.noise.x > 0.0;
+    });
   }
 
   /// Weights the priors by the residuals of the data. @return true if that has changed
@@ -121,21 +126,65 @@ class Fit {
     return std::abs(prior_weight_ - before) > k_same_number * prior_weight_;
   }
 
-  /// Sets the weights of rows with noise in proportion to y by the last response. A fit that is far below the datum,
-  /// as before first touch, does not make its noise small.
+  /// Sets the weights of rows whose noise depends on the fit by the last response: noise in proportion to y, and noise
+  /// of x along the slope of the response. A fit that is far below the datum, as before first touch, does not make its
+  /// noise small.
   /// @return true if they have changed
-  bool weigh_by_response() {
+  bool weigh_by_response(std::span<const double> parameters) {
     bool has_changed = false;
-    for (const MeasuredCurve& curve : calibration_.curves) {
-      if (!(curve.noise.relative > 0.0)) continue;
+    auto errors = errors_in_x_.begin();
+    for (std::size_t c = 0; c < responses_.size(); ++c) {
+      const MeasuredCurve& curve = calibration_.curves[c];
+      const NoiseParts& noise = curve.noise;
+      if (!(noise.relative > 0.0 || noise.x > 0.0)) continue;
+      std::span<const double> slopes;
+      if (noise.x > 0.0) {
+        errors->linearise(parameters, responses_[c]);
+        slopes = (errors++)->slopes();
+      }
       for (std::size_t row = curve.begin; row < curve.end; ++row) {
         const double size = std::max(std::abs(response_[row]), k_least_size * std::abs(calibration_.y.values[row]));
-        const double weight = 1.0 / std::hypot(curve.noise.absolute, curve.noise.relative * size);
+        const double of_y =
+            noise.relative > 0.0 ? std::hypot(noise.absolute, noise.relative * size) : 1.0 / calibration_.weights[row];
+        const double of_x = slopes.empty() ? 0.0 : noise.x * slopes[row - curve.begin];
+        const double weight = 1.0 / std::hypot(of_y, of_x);
         has_changed = has_changed || std::abs(weight - weights_[row]) > k_same_weight * weight;
         weights_[row] = weight;
       }
     }
+    set_shared_errors();
     return has_changed;
+  }
+
+  /// Sets the errors that rows share: those of turns of noisy x.
+  void set_shared_errors() {
+    Eigen::Index count = 0;
+    for (const ErrorsInX& errors : errors_in_x_) count += errors.of_turns().cols();
+    effects_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(response_.size()), count);
+    Eigen::Index turn = 0;
+    auto errors = errors_in_x_.begin();
+    for (const MeasuredCurve& curve : calibration_.curves) {
+      if (!(curve.noise.x > 0.0)) continue;
+      const Eigen::MatrixXd& part = (errors++)->of_turns();
+      effects_.block(static_cast<Eigen::Index>(curve.begin), turn, part.rows(), part.cols()) = part;
+      turn += part.cols();
+    }
+    Eigen::MatrixXd weighted(static_cast<Eigen::Index>(rows_.size()), count);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const std::size_t row = rows_[i];
+      weighted.row(static_cast<Eigen::Index>(i)) = weights_[row] * effects_.row(static_cast<Eigen::Index>(row));
+    }
+    shared_ = SharedErrors(std::move(weighted));
+  }
+
+  [[nodiscard]] std::size_t residual_count() const {
+    return rows_.size() + priors_.size() + static_cast<std::size_t>(shared_.count());
+  }
+
+  /// Takes the most probable shared errors out of the residuals, whose last ones become these errors.
+  void take_shared_errors(Eigen::Ref<Eigen::VectorXd> residuals) const {
+    if (shared_.count() == 0) return;
+    residuals.tail(shared_.count()) = shared_.take_from(residuals.head(static_cast<Eigen::Index>(rows_.size())));
   }
 
   /// One search with fixed weights. For many rows, the search begins with a fit to thinned data.
@@ -441,12 +490,16 @@ class Fit {
       jacobian.row(static_cast<Eigen::Index>(i)) =
           -weights_[rows_[i]] * gradients.row(static_cast<Eigen::Index>(rows_[i]));
     }
+    for (Eigen::Index k = 0; k < jacobian.cols(); ++k) take_shared_errors(jacobian.col(k));
     return jacobian;
   }
 
   void fit_at_data(CalibrationResult& result, const Eigen::MatrixXd& gradients) {
     static_cast<void>(failing(result.solution.parameters));
     result.fit = {calibration_.x.values, response_, bands(result, gradients)};
+    const Eigen::Map<const Eigen::VectorXd> residuals(result.solution.residuals.data(),
+                                                      static_cast<Eigen::Index>(result.solution.residuals.size()));
+    Eigen::Map<Eigen::VectorXd>(result.fit.y.data(), effects_.rows()) += effects_ * residuals.tail(effects_.cols());
     result.weights = weights_;
     if (!calibration_.has_machine()) return;
     for (const Response& response : responses_) {
@@ -505,6 +558,9 @@ class Fit {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       result.sum_of_squares += result.solution.residuals[i] * result.solution.residuals[i];
     }
+    for (std::size_t i = rows_.size() + priors_.size(); i < result.solution.residuals.size(); ++i) {
+      result.sum_of_squares += std::pow(result.solution.residuals[i], 2);
+    }
     result.rms = std::sqrt(about_fit / static_cast<double>(rows_.size()));
     result.r_squared = is_constant(calibration_) ? k_nan : 1.0 - about_fit / about_mean;
     result.explained = explained_share(calibration_, weights_, cost_of_data(result.solution));
@@ -515,14 +571,17 @@ class Fit {
 
   const Calibration& calibration_;
   ModelFits procedures_;
-  std::vector<Response> responses_;  ///< one for each curve
-  std::vector<double> response_;     ///< in every row of the last run
-  std::vector<double> weights_;      ///< of every row
-  std::vector<std::size_t> rows_;    ///< rows that count
-  std::vector<std::size_t> priors_;  ///< indices of the parameters whose priors are residuals
-  bool is_kinked_ = false;           ///< the sum of squares has a kink near its minimum
-  double prior_weight_;              ///< standard deviation of weighted residuals
-  std::vector<std::string> notes_;   ///< on the intervals
+  std::vector<Response> responses_;     ///< one for each curve
+  std::vector<double> response_;        ///< in every row of the last run
+  std::vector<ErrorsInX> errors_in_x_;  ///< of the curves with noise of x
+  Eigen::MatrixXd effects_;             ///< of the shared errors on the response in every row
+  SharedErrors shared_;                 ///< errors of turns, by their effects on weighted residuals
+  std::vector<double> weights_;         ///< of every row
+  std::vector<std::size_t> rows_;       ///< rows that count
+  std::vector<std::size_t> priors_;     ///< indices of the parameters whose priors are residuals
+  bool is_kinked_ = false;              ///< the sum of squares has a kink near its minimum
+  double prior_weight_;                 ///< standard deviation of weighted residuals
+  std::vector<std::string> notes_;      ///< on the intervals
   LeastSquaresProblem problem_;
 };
 

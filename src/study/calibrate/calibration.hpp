@@ -50,10 +50,11 @@ struct MeasuredQuantity {
   std::vector<double> values{};
 };
 
-/// The two parts of a standard deviation of y, whose squares add.
+/// Standard deviations of what is measured. The two parts of y have squares that add.
 struct NoiseParts {
-  double absolute = 0.0;  ///< [SI of y]
-  double relative = 0.0;  ///< over |y|
+  double absolute = 0.0;  ///< of y [SI of y]
+  double relative = 0.0;  ///< of y, over |y|
+  double x = 0.0;         ///< of x [SI of x]
 };
 
 /// One of the measured curves: rows of the data, and the scenario that reproduces them.
@@ -67,7 +68,7 @@ struct MeasuredCurve {
   std::array<double, 2> scales{1.0, 1.0};  ///< factors of the numbers in these columns
   std::vector<std::size_t> left_out;       ///< lines in which one of the columns has no number
   std::vector<std::size_t> trailer;        ///< lines of text below the table
-  NoiseParts noise;                        ///< of y; zero if it is not known, or if a column has it
+  NoiseParts noise;                        ///< zero if it is not known, or if a column has that of y
   Machine machine;                         ///< as given, without its free numbers
   std::vector<std::string> overrides;      ///< of the scenario, for this curve
   CheckedScenario scenario;                ///< with these overrides; has variants if the radius is free

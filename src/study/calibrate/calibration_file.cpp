@@ -171,8 +171,10 @@ class CalibrationReader {
     if (!x.observable.empty()) check_drive(specs[0], x, curve);
     std::vector<double> weights;
     if (!has_failed() && !y.values.empty()) {
-      if (has_noise && !deviations)
-        curve.noise = noise_in(reading_, data, dimension_of(y.si).value_or(Dimension::none));
+      if (has_noise) {
+        curve.noise = noise_in(reading_, data, dimension_of(x.si).value_or(Dimension::none),
+                               dimension_of(y.si).value_or(Dimension::none));
+      }
       if (!has_failed()) {
         weights = has_noise ? weights_by_noise(deviations ? &*deviations : nullptr, *measured, y, curve)
                             : weights_of(*measured, x, y, curve.file);

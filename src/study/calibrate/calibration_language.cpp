@@ -176,7 +176,7 @@ Keys distribution_keys() {
   };
 }
 
-Keys noise_keys(Dimension dimension, Kind column) {
+Keys noise_keys(Dimension of_x, Dimension of_y, Kind column) {
   KeySpec standard_errors =
       column_key("column", "column with the standard deviation of each y", column, "\"standard_error[N]\"");
   standard_errors.is_required = false;
@@ -184,13 +184,18 @@ Keys noise_keys(Dimension dimension, Kind column) {
       {.name = "absolute",
        .meaning = "part that is the same for all",
        .kind = Kind::quantity,
-       .dimension = dimension,
+       .dimension = of_y,
        .range = {.lower = 0.0, .upper = 1e300, .lower_is_open = true}},
       {.name = "relative",
        .meaning = "part in proportion to |y|",
        .kind = Kind::quantity,
        .range = {.lower = 0.0, .upper = 10.0, .lower_is_open = true},
        .example = "0.01"},
+      {.name = "x",
+       .meaning = "standard deviation of x",
+       .kind = Kind::quantity,
+       .dimension = of_x,
+       .range = {.lower = 0.0, .upper = 1e300, .lower_is_open = true}},
       standard_errors,
   };
 }

@@ -54,8 +54,8 @@ struct DataKinds {
 [[nodiscard]] Keys prior_keys(const std::vector<std::string>& paths);
 /// Keys of one prior: one of three distributions.
 [[nodiscard]] Keys distribution_keys();
-/// Keys of the noise of y. @param dimension  of y  @param column  text or integer
-[[nodiscard]] Keys noise_keys(Dimension dimension, KeySpec::Kind column);
+/// Keys of the noise. @param of_x, of_y  dimensions  @param column  text or integer
+[[nodiscard]] Keys noise_keys(Dimension of_x, Dimension of_y, KeySpec::Kind column);
 /// Keys of the method of the fit.
 [[nodiscard]] Keys fit_keys();
 

@@ -145,22 +145,29 @@ std::optional<ColumnSpec> noise_column_in(const Section& data) {
   if (!origin.table->contains("column") || (kind != KeySpec::Kind::text && kind != KeySpec::Kind::integer)) return {};
   FaultList reported_by_noise_in;
   Reading reading{reported_by_noise_in};
-  const Keys keys = noise_keys(Dimension::none, kind);
+  const Keys keys = noise_keys(Dimension::none, Dimension::none, kind);
   const Section noise(reading, origin, keys);
   return ColumnSpec{.request = request_of(noise, "column", kind),
                     .quantity_at = noise.value_place("column"),
                     .unit_at = noise.value_place("column")};
 }
 
-NoiseParts noise_in(Reading& reading, const Section& data, Dimension of_y) {
+NoiseParts noise_in(Reading& reading, const Section& data, Dimension of_x, Dimension of_y) {
   const Section::Origin origin = data.table(k_noise, std::string(k_noise));
-  const Keys keys = noise_keys(of_y, kind_of(*origin.table, "column", KeySpec::Kind::text));
+  const Keys keys = noise_keys(of_x, of_y, kind_of(*origin.table, "column", KeySpec::Kind::text));
   const Section noise(reading, origin, keys);
   if (noise.has("column") && (noise.has("absolute") || noise.has("relative"))) {
     reading.faults.add(noise.value_place("column"),
-                       "a column of standard deviations stands alone; expected no other key");
+                       "a column has the whole standard deviation of y; expected neither absolute nor relative");
   }
-  return {.absolute = noise.number("absolute").value_or(0.0), .relative = noise.number("relative").value_or(0.0)};
+  if (noise.has("x") && !noise.has("column") && !noise.has("absolute") && !noise.has("relative")) {
+    reading.faults.add(
+        noise.value_place("x"),
+        "noise of x changes nothing where y is constant; expected noise of y, too: for example absolute");
+  }
+  return {.absolute = noise.number("absolute").value_or(0.0),
+          .relative = noise.number("relative").value_or(0.0),
+          .x = noise.number("x").value_or(0.0)};
 }
 
 ParsedCompliance compliance_in(Reading& reading, const Section& section, std::string_view key) {

@@ -125,11 +125,15 @@ void note_path(const Calibration& calibration, const MeasuredCurve& curve, const
                const std::vector<Turn>& turns, Notes& notes) {
   const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
   if (const double noise = noise_in(x); noise > 0.0) {
+    const std::string of_intervals =
+        curve.noise.x > 0.0
+            ? fmt::format("Weights and intervals contain the noise given, {:.2g} {}", curve.noise.x, calibration.x.si)
+            : "Intervals do not contain it, nor the error of these points, and are too narrow where unloading is "
+              "steep; give it with noise = { x = ... }";
     notes.push_back(fmt::format(
         "{} has noise of about {:.2g} {} (standard deviation), which turns nothing; turning points lie where the rows "
-        "beside them lead. Intervals do not contain the error of these points, and are too narrow where unloading is "
-        "steep",
-        calibration.x.observable, noise, calibration.x.si));
+        "beside them lead. {}",
+        calibration.x.observable, noise, calibration.x.si, of_intervals));
     note_holds(calibration, curve, turns, notes);
   } else if (changed != x.end() && *changed < x.front() && x.front() > curve.start) {
     notes.push_back("the data begin with unloading; the particle is loaded to their first row from rest");

@@ -133,7 +133,8 @@ void check_comparable(std::span<const Calibration> calibrations) {
       throw std::runtime_error(fmt::format(
           "{}: its data are not those of {}; expected the same columns of the same files", other.file, first.file));
     }
-    if (other.weights != first.weights) {
+    const auto noise_of_x = [](const MeasuredCurve& curve) { return curve.noise.x; };
+    if (other.weights != first.weights || !std::ranges::equal(other.curves, first.curves, {}, noise_of_x, noise_of_x)) {
       throw std::runtime_error(
           fmt::format("{}: its weights, or its noise, are not those of {}; expected the same", other.file, first.file));
     }

@@ -35,6 +35,8 @@ class Response {
   [[nodiscard]] std::vector<double> particle() const {
     return particle_.empty() ? std::vector<double>() : path().at_rows(particle_);
   }
+  /// The last response at the points of the path.
+  [[nodiscard]] std::span<const double> at_points() const noexcept { return response_; }
   [[nodiscard]] const Replay& replay() const noexcept { return replay_; }
   /// Reason why there was no response.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_.empty() ? replay_.problem() : problem_; }

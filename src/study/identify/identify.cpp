@@ -16,6 +16,7 @@
 #include "scenario/words.hpp"
 #include "scene/scene.hpp"
 #include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/errors_in_x.hpp"
 #include "study/calibrate/response.hpp"
 #include "system/resolution.hpp"
 
@@ -265,6 +266,7 @@ Calibration recorded(const Table& history, const ExperimentPlan& plan, const Exp
   }
   MeasuredCurve curve;
   curve.end = fit.x.values.size();
+  curve.noise.x = program.noise_of_x;
   curve.machine = plan.machine;
   curve.scenario = program.scenario;
   curve.driven = program.driven.column;
@@ -274,7 +276,29 @@ Calibration recorded(const Table& history, const ExperimentPlan& plan, const Exp
   return fit;
 }
 
-/// Takes the rows that the machine records of a run: derivatives of a calibration's response over the noise of y.
+/// Adds the effects of noise of x to the derivatives of recorded rows over the noise of y.
+/// @param response  that has run with these values along this path
+Eigen::MatrixXd with_errors_in_x(const Eigen::MatrixXd& jacobian, const Calibration& fit, const DataPath& path,
+                                 std::span<const double> values, const Response& response) {
+  ErrorsInX errors(fit, fit.curves.front(), path);
+  errors.linearise(values, response);
+  const Eigen::Index rows = jacobian.rows();
+  Eigen::MatrixXd effects = errors.of_turns();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows + effects.cols(), jacobian.cols());
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const auto k = static_cast<std::size_t>(row);
+    const double share = 1.0 / std::hypot(1.0, fit.weights[k] * fit.curves.front().noise.x * errors.slopes()[k]);
+    result.row(row) = share * jacobian.row(row);
+    effects.row(row) *= share * fit.weights[k];
+  }
+  const SharedErrors of_turns(std::move(effects));
+  for (Eigen::Index k = 0; k < result.cols(); ++k) {
+    result.col(k).tail(of_turns.count()) = of_turns.take_from(result.col(k).head(rows));
+  }
+  return result;
+}
+
+/// Takes the rows that the machine records of a run: derivatives of a calibration's response over the noise.
 void collect_recorded_rows(const Table& history, const ExperimentPlan& plan, const ExperimentProgram& program,
                            ProgramInformation& information) {
   const Calibration fit = recorded(history, plan, program);
@@ -297,6 +321,9 @@ void collect_recorded_rows(const Table& history, const ExperimentPlan& plan, con
   }
   for (const double value : expected) information.largest = std::max(information.largest, std::abs(value));
   information.jacobian = residual_jacobian(problem, plan.values);
+  if (!(program.noise_of_x > 0.0)) return;
+  static_cast<void>(problem.residuals(plan.values, expected));
+  information.jacobian = with_errors_in_x(information.jacobian, fit, path, plan.values, response);
 }
 
 /// Takes the rows of a run that tell of the parameters: derivatives of the measured quantity over its noise.
@@ -353,13 +380,14 @@ ProgramInformation information_of(const ExperimentPlan& plan, const ExperimentPr
     information.notes.push_back("the run ends early: " + first.record.message);
   }
   const double duration = rough.row_count() > 0 ? rough.at(rough.row_count() - 1, *rough.find("time")) : 0.0;
-  if (!plan.has_machine()) {
+  const bool is_recorded = plan.has_machine() || program.noise_of_x > 0.0;
+  if (!is_recorded) {
     scenario = driven_scenario(program, rough, information.notes);
     scenario.sensitivities = program.scenario.sensitivities;
   }
   scenario.output = {.points = 0, .times = measured_instants(duration, program.points)};
   const Run run = run_scenario(scenario);
-  if (plan.has_machine()) {
+  if (is_recorded) {
     collect_recorded_rows(run.record.history, plan, program, information);
   } else {
     information.noise = run.integrator.is_direct() ? k_direct_noise : k_integrated_error;

@@ -199,15 +199,18 @@ class PlanReader {
     const Measurable::Column* y = column_of(section, program.scenario);
     if (y == nullptr) return;
     program.observable = y->name;
-    if (made_.has_machine() && !take_drive(section, program)) return;
     const Section::Origin noise = section.table(calibration::k_noise, std::string(calibration::k_noise));
     if (noise.table->contains("column")) {
       return faults_.add(program.noise_at, "key 'column' is for data; expected absolute, relative or both");
     }
+    const bool needs_drive = made_.has_machine() || noise.table->contains("x");
+    if (needs_drive && !take_drive(section, program)) return;
+    const Dimension of_x = program.driven.kind == Step::Kind::force ? Dimension::force : Dimension::length;
     const auto parts =
-        calibration::noise_in(reading_, section, calibration::dimension_of(y->unit).value_or(Dimension::none));
+        calibration::noise_in(reading_, section, of_x, calibration::dimension_of(y->unit).value_or(Dimension::none));
     program.absolute_noise = parts.absolute;
     program.relative_noise = parts.relative;
+    program.noise_of_x = parts.x;
     made_.programs.push_back(std::move(program));
   }
 

@@ -19,10 +19,11 @@ struct ExperimentProgram {
   std::vector<std::string> overrides;  ///< of the scenario, for this program
   CheckedScenario scenario;            ///< overridden; differentiates its history by the free numbers
   std::string observable;              ///< measured quantity y: "axial.force"
-  Measurable::Drive driven;            ///< quantity along which a fit goes; set if the plan has a machine
+  Measurable::Drive driven;            ///< quantity along which a fit goes; set with a machine or noise of x
   int points = 100;                    ///< measured rows, evenly in time
   double absolute_noise = 0.0;         ///< constant part of the standard deviation of y [SI of y]
   double relative_noise = 0.0;         ///< part in proportion to |y|; the squares of both parts add
+  double noise_of_x = 0.0;             ///< standard deviation of the driven quantity [SI]
   bool is_planned = false;             ///< measured in any case; other programs are candidates
   SourceLocation noise_at;
 };

@@ -22,6 +22,7 @@
 #include "history/table.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/fit_notes.hpp"
+#include "study/calibrate/granule.hpp"
 #include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
@@ -305,23 +306,6 @@ TEST(MachineInSeries, SaysWhereTheParticleCannotFollow) {
 }
 
 // --- noise of the displacement
-
-/// A granule that is loaded, held, unloaded, loaded farther and unloaded: its program takes one row a second.
-constexpr const char* k_granule = R"(model = "mdr"
-[particle]
-radius = "0.4 mm"
-[material]
-youngs_modulus = "2 GPa"
-poisson_ratio = 0.3
-yield_stress = "60 MPa"
-[loading]
-configuration = "simple"
-steps = [
-  { displacement = "0.15 R0", duration = 60 }, { hold = true, duration = 60 }, { force = "2 N", duration = 60 },
-  { displacement = "0.2 R0", duration = 60 }, { force = "0.5 N", duration = 60 }]
-[output]
-points = 60
-)";
 
 class NoisyGranule : public MachineCalibration {
  protected:

@@ -226,6 +226,13 @@ TEST_F(LinearCalibration, RefusesPriorsAndNoiseThatMakeNoSense) {
   EXPECT_EQ(fault("noise = { absolute = \"2 mm\" }", "").substr(0, 47),
             "6:22: absolute = \"2 mm\": 'mm' is a unit of leng");
   EXPECT_EQ(fault("noise = { column = \"errors\" }", "").substr(0, 25), "6:20: column = \"errors\": ");
+  EXPECT_EQ(fault("noise = { column = \"error\", relative = 0.01 }", ""),
+            "6:20: a column has the whole standard deviation of y; expected neither absolute nor relative");
+  EXPECT_EQ(fault("noise = { absolute = \"2 N\", x = \"0.2 N\" }", "").substr(0, 42),
+            "6:33: x = \"0.2 N\": 'N' is a unit of force;");
+  EXPECT_EQ(fault("noise = { absolute = \"2 N\", x = 0 }", "").substr(0, 12), "6:33: x = 0:");
+  EXPECT_EQ(fault("noise = { x = \"0.2 um\" }", ""),
+            "6:15: noise of x changes nothing where y is constant; expected noise of y, too: for example absolute");
 }
 
 TEST(Prior, SlopeIsTheDerivativeOfTheDeviation) {

@@ -221,6 +221,28 @@ TEST_F(MachinePlanTest, HasTheErrorsThatAFitOfFrameAndFirstTouchReports) {
   EXPECT_NE(text.find("data.compliance          20 nm/N"), std::string::npos) << text;
 }
 
+TEST_F(MachinePlanTest, HasTheErrorsThatAFitWithNoiseOfXReports) {
+  const std::string parts = "absolute = \"3 N\", x = \"3 um\"";
+  const std::string program = replaced(k_mdr_program, "absolute = \"30 N\"", parts);
+  const ExperimentPlan plan = read(k_mdr, std::string(k_mdr_free) + k_machine_free + k_machine + program);
+  const IdentifyResult result = identify(plan);
+  const std::string columns = "x = \"displacement[m]\"\ny = \"force[N]\"\n";
+  expect_same_errors(result, fit_with_noise(plan, columns, "3 N\", x = \"3 um", true));
+  const IdentifyResult without = identify(
+      read(k_mdr, std::string(k_mdr_free) + k_machine_free + k_machine + replaced(k_mdr_program, "30 N", "3 N")));
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_GT(standard_error(result, k), 2.0 * standard_error(without, k)) << k;
+}
+
+TEST_F(PlanTest, HasNoiseOfXWithoutAMachine) {
+  const auto error_with = [this](const std::string& parts) {
+    return standard_error(
+        identify(read(k_mdr, std::string(k_mdr_free) + replaced(k_mdr_program, "absolute = \"30 N\"", parts))), 0);
+  };
+  const double without = error_with("absolute = \"30 N\"");
+  EXPECT_NEAR(error_with("absolute = \"30 N\", x = \"1e-6 um\"") / without, 1.0, 1e-3);
+  EXPECT_GT(error_with("absolute = \"30 N\", x = \"20 um\""), 2.0 * without);
+}
+
 TEST_F(MachinePlanTest, HasTheErrorsOfAFitAlongTheForce) {
   const std::string forces = replaced(replaced(k_mdr, "displacement = \"0.2 R0\"", "force = \"30 kN\""),
                                       "displacement = \"0.17 R0\"", "force = \"5 kN\"");
@@ -489,6 +511,7 @@ TEST_F(PlanTest, RefusesWhatItDoesNotUnderstand) {
   EXPECT_NE(fault("noise = { absolute = \"5 N\", relative = 0.02 }", "").find("'noise'"), std::string::npos);
   EXPECT_EQ(fault("noise = {", "noise = { column = 3,").substr(0, 5), "8:9: ");
   EXPECT_EQ(fault("5 N", "5 mm").substr(0, 6), "8:22: ");
+  EXPECT_EQ(fault("relative = 0.02", "x = \"1 N\"").substr(0, 40), "8:33: x = \"1 N\": 'N' is a unit of force;");
   EXPECT_NE(fault("points", "y = \"axial.forse\"\npoints")
                 .find("7:5: y = \"axial.forse\" is no quantity of this "
                       "scenario"),
