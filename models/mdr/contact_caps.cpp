@@ -1,5 +1,7 @@
 #include "mdr/contact_caps.hpp"
 
+#include <algorithm>
+
 #include "mdr/guards.hpp"
 #include "mdr/resolution.hpp"
 
@@ -21,6 +23,15 @@ void ContactCaps::set_angles(const Particle& p) {
   for (std::size_t i = 0; i < angles_.size(); ++i) {
     // An idle contact has no cap; a round-off overlap of 1e-12 R0 would give one 1e-6 R0 wide.
     angles_[i] = cap_angle(is_idle(p, i) ? 0.0 : p.contact(i).overlap, p.at().r);
+  }
+}
+
+void ContactCaps::set_largest_angles(const Particle& p) {
+  for (std::size_t i = 0; i < largest_angles_.size(); ++i) {
+    const double largest = std::max(p.contact(i).overlap, p.drive(i).end() + p.at().r);
+    // An overlap is linear in xi while radius and centre rest. Up to the radius, a larger cap is nearer to any other.
+    const bool is_known = !p.mode.is_growing && !p.centre().is_free() && !p.is_force_controlled(i);
+    largest_angles_[i] = is_known && largest < 1.0 + p.at().r ? cap_angle(largest, p.at().r) : CapAngle{k_nan, k_nan};
   }
 }
 

@@ -15,6 +15,7 @@ class ContactCaps {
   explicit ContactCaps(const Setup& setup)
       : pairs_(cap_pairs_of(setup.classes)),
         angles_(setup.classes.size()),
+        largest_angles_(setup.classes.size()),
         stops_(setup.settings.stops_at_cap_intersection) {}
 
   /// Before the first step: no caps have met.
@@ -26,12 +27,14 @@ class ContactCaps {
   [[nodiscard]] bool both_touch(const Particle& p, std::size_t pair) const noexcept;
   /// Finds the angles of all caps at the state that the particle has evaluated last, for guard().
   void set_angles(const Particle& p);
-  /// Guard, at the last set_angles(): >= 0 where the caps of a pair intersect.
-  [[nodiscard]] double guard(std::size_t pair) const noexcept {
-    const CapPair& caps = pairs_[pair];
-    return cap_guard(caps, angles_[static_cast<std::size_t>(caps.first)],
-                     angles_[static_cast<std::size_t>(caps.second)]);
+  /// Finds the largest angles that the caps can have until the step or the mode ends, for may_meet().
+  void set_largest_angles(const Particle& p);
+  /// False if the caps of a pair stay apart until the step or the mode ends.
+  [[nodiscard]] bool may_meet(std::size_t pair) const noexcept {
+    return !(guard_at(largest_angles_, pair) < -k_out_of_reach);
   }
+  /// Guard, at the last set_angles(): >= 0 where the caps of a pair intersect.
+  [[nodiscard]] double guard(std::size_t pair) const noexcept { return guard_at(angles_, pair); }
 
   /// Records and logs that the caps of a pair have met.
   /// @return the reason to stop, if the settings say so
@@ -45,8 +48,16 @@ class ContactCaps {
   [[nodiscard]] std::optional<double> first_radius() const noexcept { return first_radius_; }
 
  private:
+  static constexpr double k_out_of_reach = 1e-9;
+
+  [[nodiscard]] double guard_at(const std::vector<CapAngle>& angles, std::size_t pair) const noexcept {
+    const CapPair& caps = pairs_[pair];
+    return cap_guard(caps, angles[static_cast<std::size_t>(caps.first)], angles[static_cast<std::size_t>(caps.second)]);
+  }
+
   std::vector<CapPair> pairs_;
-  std::vector<CapAngle> angles_;  ///< a class each
+  std::vector<CapAngle> angles_;          ///< a class each
+  std::vector<CapAngle> largest_angles_;  ///< likewise; NaN where the angle has no known bound
   bool stops_ = false;
   std::optional<double> first_radius_;
 };

@@ -92,10 +92,12 @@ void GuardSet::arm(Particle& p, ContactCaps& caps, double xi, std::span<const do
   }
   arm_growth(p, now);
   caps.set_angles(p);
+  caps.set_largest_angles(p);
   watches_caps_ = false;
   for (std::size_t k = 0; k < caps.pairs().size(); ++k) {
     // Caps that have just met may be a round-off short of zero, and would meet again at once.
-    if (!caps.pairs()[k].have_met && caps.both_touch(p, k) && caps.guard(k) < -k_zero_guard) {
+    const bool may_meet = !caps.pairs()[k].have_met && caps.both_touch(p, k) && caps.may_meet(k);
+    if (may_meet && caps.guard(k) < -k_zero_guard) {
       list_.push_back({k_caps, static_cast<int>(k), 1, "caps-intersect"});
       watches_caps_ = true;
     }

@@ -84,6 +84,17 @@ TEST(MdrGuards, ThatGoOneWayDoSoToTheEndOfTheStep) {
   }
 }
 
+TEST(MdrGuards, ObserveCapsOnlyWhereTheyMayMeet) {
+  const CheckedScenario scenario = mdr_scenario(Configuration::die, 50.0, 0.3, path({0.3}));
+  const auto observes_caps = [&](double displacement) {
+    Onward onward(scenario);
+    onward.begin(displacement);
+    return std::ranges::any_of(onward.system().guards(), [](const Guard& g) { return g.name == "caps-intersect"; });
+  };
+  EXPECT_TRUE(observes_caps(0.31));   // the radius grows
+  EXPECT_FALSE(observes_caps(0.29));  // the axial caps shrink
+}
+
 TEST(MdrGuards, DoNotSayThatTheyGoOneWayWhereTheRadiusGrowsOrForcesAreGiven) {
   const CheckedScenario scenario = mdr_scenario(Configuration::die, 50.0, 0.3, path({0.16}));
   Onward grows(scenario);
