@@ -265,7 +265,7 @@ CentreStiffness centre_stiffness(Particle& p) {
 double centre_stiffness_guard(Particle& p) {
   const CentreStiffness softest = centre_stiffness(p);
   const double round_off = std::min(round_off_of(p, softest), k_at_fold);
-  return softest.value - std::max(k_least_centre_stiffness, round_off);
+  return softest.value - std::max(k_margin_of_fold, round_off);
 }
 
 void check_softening(const Particle& p) {

@@ -276,7 +276,7 @@ double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, dou
     case k_unstable:
       return centre_stiffness_guard(p);
     case k_softened:
-      return is_any_softened(p) ? centre_stiffness(p).value - k_least_centre_stiffness : 1.0;
+      return is_any_softened(p) ? centre_stiffness(p).value - k_margin_of_fold : 1.0;
     case k_singular:
       return now.free_surface(p.at().r) - k_least_slope;
     case k_covered:

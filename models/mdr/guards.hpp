@@ -49,10 +49,6 @@ inline constexpr double k_at_rest = 1e-8;
 inline constexpr double k_together = 1e-6;
 /// Growth ends where the free surface falls below this share of the particle's surface.
 inline constexpr double k_least_slope = 1e-3;
-/// Stiffness of a free centre at which a fold counts as reached. At the fold the equilibrium ceases to exist: a guard
-/// that vanished there could not be located, because no state lies beyond. The remaining distance to the fold goes with
-/// the square of this stiffness.
-inline constexpr double k_least_centre_stiffness = 1e-5;
 /// A plastic contact under a prescribed force has reached its largest force when its stiffness is this share of that of
 /// a shallow contact. Below this stiffness, the overlap would magnify errors of the radius a hundredfold and more.
 inline constexpr double k_last_stiffness = 1e-2;

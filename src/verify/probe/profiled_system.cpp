@@ -196,6 +196,9 @@ class LookingBeyond final : public WrappedSystem {
     WrappedSystem::residual(inner(xi), y, inner_rates_, res);
   }
   void solve(double xi, State y) override { WrappedSystem::solve(inner(xi), y); }
+  [[nodiscard]] double next_kink(double after, double xi, View y) override {
+    return factor_ * WrappedSystem::next_kink(inner(after), inner(xi), y);
+  }
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, View y) override {
     return WrappedSystem::closed_quadrature(inner(xi), y);
   }

@@ -154,7 +154,7 @@ TEST(StressLimits, AToleranceOfTheSizeOfRoundOffIsNamed) {
     const monograin::Run fine = run_scenario(scenario);
     if (fine.record.status == RunStatus::failed) {
       ++failures;
-      EXPECT_NE(fine.record.message.find("errors of the size of rounding"), std::string::npos) << fine.record.message;
+      EXPECT_NE(fine.record.message.find("errors of the size of round-off"), std::string::npos) << fine.record.message;
       EXPECT_EQ(stated_end(fine), "tolerance of round-off");
     }
     scenario.numerics.rtol = 1e-8;
