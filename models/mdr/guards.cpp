@@ -93,13 +93,13 @@ void GuardSet::arm(Particle& p, ContactCaps& caps, double xi, std::span<const do
   arm_growth(p, now);
   caps.set_angles(p);
   caps.set_largest_angles(p);
-  watches_caps_ = false;
+  has_cap_guards_ = false;
   for (std::size_t k = 0; k < caps.pairs().size(); ++k) {
     // Caps that have just met may be a round-off short of zero, and would meet again at once.
     const bool may_meet = !caps.pairs()[k].have_met && caps.both_touch(p, k) && caps.may_meet(k);
     if (may_meet && caps.guard(k) < -k_zero_guard) {
       list_.push_back({k_caps, static_cast<int>(k), 1, "caps-intersect"});
-      watches_caps_ = true;
+      has_cap_guards_ = true;
     }
   }
   if (p.law().material.bulk_compliance > 0.0) list_.push_back({k_volume, -1, -1, "volume-limit"});
@@ -316,7 +316,7 @@ void GuardSet::values(Particle& p, ContactCaps& caps, double xi, std::span<const
                       std::span<double> values) const {
   p.evaluated(xi, y);
   const Motion now = p.motion(p.mode.is_growing);
-  if (watches_caps_) caps.set_angles(p);
+  if (has_cap_guards_) caps.set_angles(p);
   for (std::size_t g = 0; g < list_.size(); ++g) values[g] = guard_value(p, caps, list_[g], xi, y, now);
 }
 

@@ -93,7 +93,7 @@ class GuardSet {
   void arm_growth(const Particle& p, const Motion& now);
 
   std::vector<Guard> list_;
-  bool watches_caps_ = false;  ///< the list has guards of caps
+  bool has_cap_guards_ = false;  ///< the list has guards of caps
 };
 
 }  // namespace monograin::mdr

@@ -32,7 +32,8 @@ inline constexpr double k_no_net_force = 1e-9;
 /// Stiffness, over the greatest one, that is round-off.
 inline constexpr double k_no_stiffness = 1e-12;
 /// Margin to a fold, 1 far from it and 0 at it, at which the fold counts as reached: no state exists beyond, so that a
-/// guard that is zero there could not be located. The margin goes with the root of the distance: 1e-10 of it is left.
+/// guard that is zero there could not be located. The margin is the square root of the distance, of which 1e-10 is
+/// left.
 inline constexpr double k_margin_of_fold = 1e-5;
 
 /// Distance of two step coordinates that are the same instant, and largest value of a guard that is zero: guards are of

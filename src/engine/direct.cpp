@@ -184,8 +184,8 @@ class Direct final : public EventLocator {
   }
 
   /// Ends the piece at the first kink in it, or up to a share `rest` beyond it: the series of the work then see smooth
-  /// rates. Kinks that lie close together for the length of the piece are taken to be weak; where they are not, refused
-  /// pieces become as short as their distances.
+  /// rates. Kinks that lie close together for the length of the piece are taken to be weak. If they are not, pieces are
+  /// refused until they are as short as the distances between the kinks.
   /// @return true if the piece ends at a kink
   bool end_at_kink(double rest) {
     // The last piece ended at kinks that are nearer than this share of the piece to its beginning.

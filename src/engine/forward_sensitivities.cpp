@@ -80,21 +80,29 @@ struct ForwardSensitivities::Side {
     begin = xi;
     begin_y = y;
     begin_guards.resize(guard_set.size());
-    primitive_offset.reset();
+    primitive_offset = offset_of_primitive();
     try {
-      if (quadrature && !system().is_quadrature_costly()) {
-        if (const auto primitive = system().closed_quadrature(xi, y)) primitive_offset = y[*quadrature] - *primitive;
-      }
       guard_set.values(xi, y, begin_guards);
     } catch (const std::domain_error&) {
       std::ranges::fill(begin_guards, k_nan);
+    }
+  }
+  /// Value of the quadrature less its closed form; none where there is no such form.
+  [[nodiscard]] std::optional<double> offset_of_primitive() {
+    if (!quadrature || system().is_quadrature_costly()) return std::nullopt;
+    try {
+      const auto primitive = system().closed_quadrature(xi, y);
+      return primitive ? std::optional(y[*quadrature] - *primitive) : std::nullopt;
+    } catch (const std::domain_error&) {
+      return std::nullopt;
     }
   }
   /// Completes the state. The quadrature gets its closed form, if it has one, in place of the integrated value: the
   /// derivative of the work behaves like a square root where a contact is lost, and integrators lose digits there.
   void complete() {
     system().complete(xi, y);
-    if (primitive_offset) y[*quadrature] = *primitive_offset + *system().closed_quadrature(xi, y);
+    if (!primitive_offset) return;
+    if (const auto primitive = system().closed_quadrature(xi, y)) y[*quadrature] = *primitive_offset + *primitive;
   }
   void go_back() {
     xi = begin;

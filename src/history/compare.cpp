@@ -350,14 +350,14 @@ struct PathIntegrals {
   return {};
 }
 
-/// Describes rows without an abscissa, which are not compared, if only one of the curves has such rows.
+/// Describes rows without an abscissa, which are not compared, if one of the curves has more of them.
 [[nodiscard]] std::string undefined_rows(std::span<const double> x_a, std::span<const double> x_b) {
   const auto undefined = [](std::span<const double> x) {
     return std::ranges::count_if(x, [](double value) { return std::isnan(value); });
   };
   const auto in_a = undefined(x_a);
   const auto in_b = undefined(x_b);
-  if ((in_a == 0) == (in_b == 0)) return {};
+  if (in_a == in_b) return {};
   return fmt::format("is undefined in {} of {} rows, and in {} of {} of the reference", in_b, x_b.size(), in_a,
                      x_a.size());
 }

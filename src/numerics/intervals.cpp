@@ -334,7 +334,9 @@ Bootstrap bootstrap(const LeastSquaresProblem& problem, const LeastSquaresSoluti
         change[i] = deviation(i) * inflation * (alike[from % n] - mean) - solution.residuals[i];
       }
     }
-    for (std::size_t i = n; i < change.size(); ++i) change[i] = uncertainty.standard_deviation * normal(generator);
+    for (std::size_t i = n; i < change.size(); ++i) {
+      change[i] = uncertainty.standard_deviation * normal(generator) - solution.residuals[i];
+    }
     const LocalMinimum& start = solution;
     const auto found = minimise_near(again, {&start, 1}, Accuracy::rough);
     if (!found) continue;

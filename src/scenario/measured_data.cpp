@@ -316,11 +316,12 @@ MeasuredData parse_measured(std::string_view bytes, const std::string& origin, c
     data = DataParser(origin, wanted, open, as_found).parse(bytes);
     if (as_found.size() == 0) {
       const std::string_view separator = separator_word(data.layout.separator);
-      faults.add({origin, data.layout.first_line, 1},
-                 fmt::format("the table cannot be read with the separator and decimal that are given; it has {0} "
-                             "between the cells and the decimal sign '{1}': expected separator = \"{0}\" and decimal "
-                             "= \"{1}\", or neither key",
-                             separator, data.layout.decimal));
+      const char* given = !format.decimal ? "separator" : format.separator ? "separator and decimal" : "decimal";
+      faults.add(
+          {origin, data.layout.first_line, 1},
+          fmt::format("the table cannot be read with the given {2}; it has {0} between the cells and the decimal "
+                      "sign '{1}': expected separator = \"{0}\" and decimal = \"{1}\", or neither key",
+                      separator, data.layout.decimal, given));
       return data;
     }
   }

@@ -40,7 +40,7 @@ struct Reading {
 struct BareNumber {
   std::string assignment;  ///< with its place: "displacement = 0.4 (line 12)"
   double value = 0.0;
-  std::string before_unit;  ///< what stands around a unit that is added: "\"0.4 ", "x["
+  std::string before_unit;  ///< text before the unit to add: "\"0.4 ", "x["
   std::string after_unit;
 };
 

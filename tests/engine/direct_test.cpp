@@ -107,21 +107,21 @@ TEST(Direct, RefinesARootAndAKinkHoweverSmall) {
   }
 }
 
-TEST(Direct, EndsPiecesAtKinksThatTheSystemForetells) {
+TEST(Direct, EndsPiecesAtKinksThatTheSystemKnows) {
   const std::vector<double> kinks{0.1234, 0.4321, 0.5555, 0.8};
   std::vector<int> evaluations;
-  for (const bool are_foretold : {false, true}) {
+  for (const bool are_known : {false, true}) {
     auto toy = std::make_unique<ToySystem>();
     toy->is_quadrature = true;
     toy->rates_function = [&](double xi, View, std::span<double> dy) {
       dy[0] = std::exp(xi);
       for (const double kink : kinks) dy[0] += xi > kink ? (xi - kink) * (xi - kink) : 0.0;
     };
-    if (are_foretold) toy->kinks = kinks;
+    if (are_known) toy->kinks = kinks;
     const TestRun result = run_directly(std::move(toy));
     double integral = std::exp(1.0) - 1.0;
     for (const double kink : kinks) integral += std::pow(1.0 - kink, 3) / 3.0;
-    EXPECT_NEAR(result.last("y0"), integral, 1e-11) << are_foretold;
+    EXPECT_NEAR(result.last("y0"), integral, 1e-11) << are_known;
     evaluations.push_back(toy_in(result.scene).rates_count);
   }
   EXPECT_LT(evaluations[1], 150);
@@ -130,11 +130,11 @@ TEST(Direct, EndsPiecesAtKinksThatTheSystemForetells) {
 
 TEST(Direct, IgnoresWeakKinksThatLieCloseTogether) {
   std::vector<int> evaluations;
-  for (const bool are_foretold : {false, true}) {
+  for (const bool are_known : {false, true}) {
     auto toy = std::make_unique<ToySystem>();
     toy->is_quadrature = true;
     toy->rates_function = [](double xi, View, std::span<double> dy) { dy[0] = std::exp(xi); };
-    for (int k = 1; are_foretold && k < 1000; ++k) toy->kinks.push_back(1e-3 * k);
+    for (int k = 1; are_known && k < 1000; ++k) toy->kinks.push_back(1e-3 * k);
     evaluations.push_back(toy_in(run_directly(std::move(toy)).scene).rates_count);
   }
   EXPECT_EQ(evaluations[1], evaluations[0]);

@@ -277,18 +277,19 @@ TEST(CompareTables, NamesEveryColumnThatTheOtherLacksOrHasInAnotherUnit) {
 }
 
 TEST(CompareTables, NamesAPlaceThatOnlyOneOfThemDefines) {
-  const auto table = [](double second) {
+  const auto table = [](double second, double third = 2.0) {
     Table made({{"time", "s", {}}, {"force", "N", {}}});
-    for (const double time : {0.0, second, 2.0}) made.append({{time, 1.0}});
+    for (const double time : {0.0, second, third, 3.0}) made.append({{time, 1.0}});
     return made;
   };
   const auto gaps = [&](double in_a, double in_b) { return compare_tables(table(in_a), table(in_b), "", "").gaps; };
   const double none = std::numeric_limits<double>::quiet_NaN();
   ASSERT_EQ(gaps(1.0, none).size(), 1u);
   EXPECT_EQ(gaps(1.0, none)[0].column, "time[s]");
-  EXPECT_EQ(gaps(1.0, none)[0].problem, "is undefined in 1 of 3 rows, and in 0 of 3 of the reference");
+  EXPECT_EQ(gaps(1.0, none)[0].problem, "is undefined in 1 of 4 rows, and in 0 of 4 of the reference");
   EXPECT_EQ(gaps(none, 1.0).size(), 1u);
   EXPECT_EQ(gaps(none, none).size(), 0u);
+  EXPECT_EQ(compare_tables(table(none), table(none, none), "", "").gaps.size(), 1u) << "one of them has more";
 }
 
 TEST(CompareTables, NamesTheColumnThatIsNotCovered) {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -129,6 +131,29 @@ TEST(Intervals, OfABootstrapOfALinearProblemAreThoseOfTheCovariance) {
     const Interval interval = drawn.interval(k, 0.95);
     EXPECT_NEAR((interval.upper - interval.lower) / (2.0 * uncertainty.half_width(k)), 1.0, 0.1);
   }
+}
+
+TEST(Intervals, OfABootstrapHaveTheFitInTheirMiddleBesideAPrior) {
+  // Data that say 0 and a prior that says 1, each with a deviation of 0.1.
+  LeastSquaresProblem problem;
+  problem.parameters = {{-10.0, 10.0, false, {}}};
+  problem.residual_count = 2;
+  problem.plain_count = 1;
+  problem.residuals = [](std::span<const double> p, std::span<double> r) {
+    r[0] = -p[0] / 0.1;
+    r[1] = (p[0] - 1.0) / 0.1;
+    return true;
+  };
+  const auto solution = minimise(problem);
+  ASSERT_TRUE(solution);
+  ASSERT_NEAR(solution->parameters[0], 0.5, 1e-8);
+  Uncertainty uncertainty;
+  uncertainty.standard_deviation = 1.0;
+  const Bootstrap drawn = bootstrap(problem, *solution, uncertainty, 1, 0, 1000, 3);
+  const Interval interval = drawn.interval(0, 0.95);
+  const double error = 0.1 / std::numbers::sqrt2;
+  EXPECT_NEAR(std::midpoint(interval.lower, interval.upper), 0.5, 0.1 * error);
+  EXPECT_NEAR(drawn.standard_error(0) / error, 1.0, 0.1);
 }
 
 TEST(Intervals, OfABootstrapAreThoseOfTheNoiseThatIsKnown) {

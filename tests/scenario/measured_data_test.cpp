@@ -291,17 +291,17 @@ TEST(MachineFiles, TakeTheUsersWordForTheirWriting) {
 TEST(MachineFiles, SayOnceThatTheyAreWrittenOtherwiseThanTheUserSays) {
   const std::string points = "Weg,Kraft\n0.5,1.5\n0.6,2.5\n";
   const std::string commas = "Weg;Kraft\n0,5;1,5\n0,6;2,5\n";
-  const auto complaint = [](const char* separator, const char* decimal) {
+  const auto complaint = [](const char* given, const char* separator, const char* decimal) {
     return Cells{
-        fmt::format("d.csv:2:1: the table cannot be read with the separator and decimal that are given; it "
-                    "has {0} between the cells and the decimal sign '{1}': expected separator = \"{0}\" and "
-                    "decimal = \"{1}\", or neither key",
-                    separator, decimal)};
+        fmt::format("d.csv:2:1: the table cannot be read with the given {2}; it has {0} between the cells and the "
+                    "decimal sign '{1}': expected separator = \"{0}\" and decimal = \"{1}\", or neither key",
+                    separator, decimal, given)};
   };
-  EXPECT_EQ(read(points, {.decimal = ','}).faults, complaint("comma", "."));
-  EXPECT_EQ(read(points, {.separator = ';'}).faults, complaint("comma", "."));
-  EXPECT_EQ(read(commas, {.separator = ','}).faults, complaint("semicolon", ","));
-  EXPECT_EQ(read(commas, {.decimal = '.'}).faults, complaint("semicolon", ","));
+  EXPECT_EQ(read(points, {.decimal = ','}).faults, complaint("decimal", "comma", "."));
+  EXPECT_EQ(read(points, {.separator = ';'}).faults, complaint("separator", "comma", "."));
+  EXPECT_EQ(read(points, {.separator = ';', .decimal = ','}).faults, complaint("separator and decimal", "comma", "."));
+  EXPECT_EQ(read(commas, {.separator = ','}).faults, complaint("separator", "semicolon", ","));
+  EXPECT_EQ(read(commas, {.decimal = '.'}).faults, complaint("decimal", "semicolon", ","));
   EXPECT_EQ(read("Weg;Kraft\n0,5;x\n0,6;2,5\n", {.separator = ';'}).faults,
             Cells{"d.csv:2:5: Kraft = x: expected a finite number"})
       << "a fault that no setting causes";

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -53,7 +54,9 @@ class Fit {
       : calibration_(calibration),
         procedures_(model_fits(calibration)),
         response_(calibration.x.values.size()),
+        excesses_(calibration.x.values.size()),
         weights_(calibration.weights),
+        trial_weights_(calibration.weights),
         prior_weight_(prior_weight) {
     for (const MeasuredCurve& curve : calibration.curves) {
       DataPath path = path_through(x_of(calibration, curve));
@@ -77,9 +80,10 @@ class Fit {
     problem_.progress = progress;
     problem_.residuals = [this](std::span<const double> parameters, std::span<double> residuals) {
       if (failing(parameters) < responses_.size()) return false;
+      weigh_by_slopes();
       for (std::size_t i = 0; i < rows_.size(); ++i) {
         const std::size_t row = rows_[i];
-        residuals[i] = weights_[row] * (calibration_.y.values[row] - response_[row]);
+        residuals[i] = trial_weights_[row] * (calibration_.y.values[row] - response_[row] - excesses_[row]);
       }
       for (std::size_t j = 0; j < priors_.size(); ++j) {
         const std::size_t k = priors_[j];
@@ -126,32 +130,51 @@ class Fit {
     return std::abs(prior_weight_ - before) > k_same_number * prior_weight_;
   }
 
-  /// Sets the weights of rows whose noise depends on the fit by the last response: noise in proportion to y, and noise
-  /// of x along the slope of the response. A fit that is far below the datum, as before first touch, does not make its
-  /// noise small.
-  /// @return true if they have changed
-  bool weigh_by_response(std::span<const double> parameters) {
-    bool has_changed = false;
+  /// Weighs rows with noise of x by the slope of the last response. Weights that stayed as they were would make slopes
+  /// too small (Lybanon (1984), Am. J. Phys. 52, 22).
+  void weigh_by_slopes() {
     auto errors = errors_in_x_.begin();
     for (std::size_t c = 0; c < responses_.size(); ++c) {
       const MeasuredCurve& curve = calibration_.curves[c];
-      const NoiseParts& noise = curve.noise;
-      if (!(noise.relative > 0.0 || noise.x > 0.0)) continue;
-      std::span<const double> slopes;
-      if (noise.x > 0.0) {
-        errors->linearise(parameters, responses_[c]);
-        slopes = (errors++)->slopes();
+      if (!(curve.noise.x > 0.0)) continue;
+      errors->follow(responses_[c]);
+      std::ranges::copy(errors->excesses(), rows_of(excesses_, curve).begin());
+      for (std::size_t row = curve.begin; row < curve.end; ++row) {
+        trial_weights_[row] =
+            1.0 / std::hypot(deviation_of_y(row), curve.noise.x * errors->slopes()[row - curve.begin]);
       }
+      ++errors;
+    }
+  }
+
+  /// Standard deviation of y alone, in proportion to the fit where it is relative.
+  [[nodiscard]] double deviation_of_y(std::size_t row) const {
+    return noise_of_y_.empty() ? 1.0 / calibration_.weights[row] : noise_of_y_[row];
+  }
+
+  /// Sets what depends on the fit by the last response: noise in proportion to y, weights, and the effects of turns. A
+  /// fit that is far below the datum, as before first touch, does not make its noise small.
+  /// @return true if weights have changed
+  bool weigh_by_response(std::span<const double> parameters) {
+    noise_of_y_.resize(response_.size());
+    for (const MeasuredCurve& curve : calibration_.curves) {
+      const NoiseParts& noise = curve.noise;
       for (std::size_t row = curve.begin; row < curve.end; ++row) {
         const double size = std::max(std::abs(response_[row]), k_least_size * std::abs(calibration_.y.values[row]));
-        const double of_y =
+        noise_of_y_[row] =
             noise.relative > 0.0 ? std::hypot(noise.absolute, noise.relative * size) : 1.0 / calibration_.weights[row];
-        const double of_x = slopes.empty() ? 0.0 : noise.x * slopes[row - curve.begin];
-        const double weight = 1.0 / std::hypot(of_y, of_x);
-        has_changed = has_changed || std::abs(weight - weights_[row]) > k_same_weight * weight;
-        weights_[row] = weight;
+        trial_weights_[row] = 1.0 / noise_of_y_[row];
       }
     }
+    weigh_by_slopes();
+    auto errors = errors_in_x_.begin();
+    for (std::size_t c = 0; c < responses_.size(); ++c) {
+      if (calibration_.curves[c].noise.x > 0.0) (errors++)->move_turns(parameters, responses_[c]);
+    }
+    const bool has_changed = !std::ranges::equal(trial_weights_, weights_, [](double trial, double weight) {
+      return std::abs(trial - weight) <= k_same_weight * trial;
+    });
+    weights_ = trial_weights_;
     set_shared_errors();
     return has_changed;
   }
@@ -496,10 +519,12 @@ class Fit {
 
   void fit_at_data(CalibrationResult& result, const Eigen::MatrixXd& gradients) {
     static_cast<void>(failing(result.solution.parameters));
+    weigh_by_slopes();
     result.fit = {calibration_.x.values, response_, bands(result, gradients)};
     const Eigen::Map<const Eigen::VectorXd> residuals(result.solution.residuals.data(),
                                                       static_cast<Eigen::Index>(result.solution.residuals.size()));
     Eigen::Map<Eigen::VectorXd>(result.fit.y.data(), effects_.rows()) += effects_ * residuals.tail(effects_.cols());
+    std::ranges::transform(result.fit.y, excesses_, result.fit.y.begin(), std::plus<>());
     result.weights = weights_;
     if (!calibration_.has_machine()) return;
     for (const Response& response : responses_) {
@@ -561,6 +586,9 @@ class Fit {
     for (std::size_t i = rows_.size() + priors_.size(); i < result.solution.residuals.size(); ++i) {
       result.sum_of_squares += std::pow(result.solution.residuals[i], 2);
     }
+    result.noise_growth = shared_.log_determinant();
+    for (const std::size_t row : rows_)
+      result.noise_growth += 2.0 * std::log(calibration_.weights[row] / weights_[row]);
     result.rms = std::sqrt(about_fit / static_cast<double>(rows_.size()));
     result.r_squared = is_constant(calibration_) ? k_nan : 1.0 - about_fit / about_mean;
     result.explained = explained_share(calibration_, weights_, cost_of_data(result.solution));
@@ -573,10 +601,13 @@ class Fit {
   ModelFits procedures_;
   std::vector<Response> responses_;     ///< one for each curve
   std::vector<double> response_;        ///< in every row of the last run
+  std::vector<double> noise_of_y_;      ///< of y in every row, by the last fit; empty before the first one
+  std::vector<double> excesses_;        ///< in every row, of the mean of y over the noise of x
   std::vector<ErrorsInX> errors_in_x_;  ///< of the curves with noise of x
   Eigen::MatrixXd effects_;             ///< of the shared errors on the response in every row
   SharedErrors shared_;                 ///< errors of turns, by their effects on weighted residuals
-  std::vector<double> weights_;         ///< of every row
+  std::vector<double> weights_;         ///< of every row, at the last fit
+  std::vector<double> trial_weights_;   ///< of every row, at the last response
   std::vector<std::size_t> rows_;       ///< rows that count
   std::vector<std::size_t> priors_;     ///< indices of the parameters whose priors are residuals
   bool is_kinked_ = false;              ///< the sum of squares has a kink near its minimum

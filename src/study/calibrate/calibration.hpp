@@ -50,7 +50,7 @@ struct MeasuredQuantity {
   std::vector<double> values{};
 };
 
-/// Standard deviations of what is measured. The two parts of y have squares that add.
+/// Standard deviations of what is measured. The squares of the two parts of y add up.
 struct NoiseParts {
   double absolute = 0.0;  ///< of y [SI of y]
   double relative = 0.0;  ///< of y, over |y|
@@ -145,6 +145,7 @@ struct CalibrationResult {
   std::size_t points = 0;             ///< rows that count
   std::size_t program_steps = 0;      ///< steps of the loading made from the data
   double sum_of_squares = 0.0;        ///< of weighted residuals; chi^2 if the noise is known
+  double noise_growth = 0.0;          ///< ln det of the covariance of noise that follows from the fit, less that given
   double rms = 0.0;                   ///< of residuals [SI of y], over all rows that count
   double largest = 0.0;               ///< largest magnitude of a residual
   std::size_t largest_at = 0;         ///< row of the largest residual

@@ -61,6 +61,7 @@ class CalibrationReader {
     faults_.throw_if_any();
     check_lengths(root);
     check_machine(root);
+    check_loss(root);
     check_count(root);
     faults_.throw_if_any();
     return std::move(made_);
@@ -126,6 +127,16 @@ class CalibrationReader {
                                                        "loss_scale = 0.01, a share of the largest |y|",
                                                        loss));
     }
+  }
+
+  void check_loss(const Section& root) {
+    const bool has_noise_of_x =
+        std::ranges::any_of(made_.curves, [](const MeasuredCurve& curve) { return curve.noise.x > 0.0; });
+    if (made_.loss.kind == Loss::linear || !has_noise_of_x) return;
+    faults_.add(root.value_place("fit"),
+                fmt::format("loss = \"{}\" with noise of x: errors of turns are those of least squares; expected the "
+                            "linear loss, or noise without x",
+                            k_losses[static_cast<std::size_t>(made_.loss.kind)]));
   }
 
   // --- data
@@ -419,7 +430,7 @@ class CalibrationReader {
       const auto [least, most] = std::ranges::minmax(forces.subspan(curve.begin, count));
       const auto [first, last] = std::ranges::minmax(displacements.subspan(curve.begin, count));
       const double deflection = std::abs(curve.machine.addition(most) - curve.machine.addition(least));
-      if (deflection <= k_largest_deflection * (last - first)) continue;
+      if (first == last || deflection <= k_largest_deflection * (last - first)) continue;
       faults_.add(
           where, fmt::format("compliance: the frame would yield by {:.4g} m under the forces of {}, where the measured "
                              "displacement changes by {:.4g} m; expected a compliance below {:.2g} m/N, for example "

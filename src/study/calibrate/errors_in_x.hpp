@@ -17,33 +17,49 @@ namespace monograin {
 /// Its standard deviation is that of a row's x, or of the mean over a hold.
 class ErrorsInX {
  public:
-  /// @param curve  with noise of x
+  /// @param calibration  and `curve`, with noise of x, must outlive the errors
   ErrorsInX(const Calibration& calibration, const MeasuredCurve& curve, const DataPath& path);
 
-  /// Linearises the response. @param response  that has run with these parameters along this path
-  void linearise(std::span<const double> parameters, const Response& response);
+  /// Sets slopes and excesses. @param response  that has run along this path
+  void follow(const Response& response);
+  /// Sets the effects of turns, after follow(). @param response  that has run with these parameters along this path
+  void move_turns(std::span<const double> parameters, const Response& response);
 
   /// dy/dx of the response in every row, on the row's own branch: the secant over a standard deviation of x to both
   /// sides. Zero in a hold, whose rows lie at the turn whatever their own x is.
   [[nodiscard]] std::span<const double> slopes() const noexcept { return slopes_; }
-  /// Change of the response in every row by an error of one standard deviation of each turn.
+  /// Mean of y over the noise of a row's own x, less y in the row: d2y/dx2 times half the variance of x. Zero in a hold
+  /// and at the ends of branches.
+  [[nodiscard]] std::span<const double> excesses() const noexcept { return excesses_; }
+  /// Change of the response in every row by an error of one standard deviation of each turn; zero for a turn that the
+  /// scenario cannot follow if it is moved to either side.
   [[nodiscard]] const Eigen::MatrixXd& of_turns() const noexcept { return of_turns_; }
 
  private:
-  struct MovedTurn {
-    double error = 0.0;  ///< standard deviation of its x, with the sign of outwards
-    Response response;   ///< along the path with the turn moved by that
+  struct UncertainTurn {
+    std::size_t point = 0;  ///< of the path
+    double error = 0.0;     ///< standard deviation of its x, with the sign of outwards
   };
 
-  [[nodiscard]] double slope_at(std::size_t point, std::size_t branch, std::span<const double> y) const;
+  /// First point of a branch of the path.
+  [[nodiscard]] std::size_t beginning_of(std::size_t branch) const noexcept {
+    return branch > 0 ? path_.ends[branch - 1] : 0;
+  }
+  /// Sets slope and excess of a row.
+  void expand(std::size_t row, std::span<const double> y);
+  /// Moves a turn by an error. @return false if the scenario cannot follow
+  [[nodiscard]] bool respond_with(std::span<const double> parameters, std::size_t point, double error);
 
+  const Calibration& calibration_;
+  const MeasuredCurve& curve_;
   DataPath path_;
   double noise_;
   std::vector<std::size_t> branch_of_;  ///< of every row
   std::vector<bool> is_held_;           ///< every row
-  std::vector<MovedTurn> turns_;
+  std::vector<UncertainTurn> turns_;
   std::vector<double> moved_;  ///< response of every row with a moved turn
   std::vector<double> slopes_;
+  std::vector<double> excesses_;
   Eigen::MatrixXd of_turns_;
 };
 
@@ -60,6 +76,8 @@ class SharedErrors {
   explicit SharedErrors(Eigen::MatrixXd effects);
 
   [[nodiscard]] Eigen::Index count() const noexcept { return effects_.cols(); }
+  /// Logarithm of the determinant of 1 + G G^T.
+  [[nodiscard]] double log_determinant() const;
   /// Takes the effects of the most probable errors away. @return these errors, over their standard deviations
   Eigen::VectorXd take_from(Eigen::Ref<Eigen::VectorXd> residuals) const;
 

@@ -125,11 +125,15 @@ void note_path(const Calibration& calibration, const MeasuredCurve& curve, const
                const std::vector<Turn>& turns, Notes& notes) {
   const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
   if (const double noise = noise_in(x); noise > 0.0) {
-    const std::string of_intervals =
+    constexpr double k_apart = 3.0;  // ratio of noises from which on one of them is wrong
+    std::string of_intervals =
         curve.noise.x > 0.0
             ? fmt::format("Weights and intervals contain the noise given, {:.2g} {}", curve.noise.x, calibration.x.si)
             : "Intervals do not contain it, nor the error of these points, and are too narrow where unloading is "
               "steep; give it with noise = { x = ... }";
+    if (curve.noise.x > k_apart * noise || (curve.noise.x > 0.0 && curve.noise.x < noise / k_apart)) {
+      of_intervals += ", which differs by far; check it and its unit";
+    }
     notes.push_back(fmt::format(
         "{} has noise of about {:.2g} {} (standard deviation), which turns nothing; turning points lie where the rows "
         "beside them lead. {}",

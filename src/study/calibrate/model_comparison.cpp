@@ -162,7 +162,7 @@ ModelComparison compare_models(std::span<const Calibration> calibrations, std::s
     const bool is_known = calibration.knows_noise();
     // If the noise is estimated, its size is a parameter, too.
     const auto parameters = static_cast<double>(calibration.free.size()) + (is_known ? 0.0 : 1.0);
-    const double misfit = is_known ? squares : n * std::log(squares / n);
+    const double misfit = is_known ? squares + results[k].noise_growth : n * std::log(squares / n);
     double of_predictions = 0.0;
     for (const Part& part : parts.list) {
       of_predictions += squares_of_prediction(calibration, part).value_or(k_nan);

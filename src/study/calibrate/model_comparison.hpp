@@ -15,8 +15,8 @@ namespace monograin {
 /// Criteria and predictions of one of the fits.
 struct RankedFit {
   std::size_t parameters = 0;
-  double aic = 0.0;         ///< Akaike (1974), of n ln(S/n), or of chi^2 if the noise is known; less is better
-  double bic = 0.0;         ///< Schwarz (1978), of the same
+  double aic = 0.0;  ///< Akaike (1974), of n ln(S/n), or of chi^2 + ln det C if the noise is known; less is better
+  double bic = 0.0;  ///< Schwarz (1978), of the same
   double prediction = 0.0;  ///< rms difference of each part of the data from a fit to the others [SI of y]; or nan
 };
 

@@ -281,7 +281,8 @@ Calibration recorded(const Table& history, const ExperimentPlan& plan, const Exp
 Eigen::MatrixXd with_errors_in_x(const Eigen::MatrixXd& jacobian, const Calibration& fit, const DataPath& path,
                                  std::span<const double> values, const Response& response) {
   ErrorsInX errors(fit, fit.curves.front(), path);
-  errors.linearise(values, response);
+  errors.follow(response);
+  errors.move_turns(values, response);
   const Eigen::Index rows = jacobian.rows();
   Eigen::MatrixXd effects = errors.of_turns();
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows + effects.cols(), jacobian.cols());

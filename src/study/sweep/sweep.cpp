@@ -216,7 +216,7 @@ class LinesDigest {
     is_own |= line == k_digest_line + sweep.digest;
     if (line.starts_with(k_rows_digest_line)) digest = line.substr(k_rows_digest_line.size(), k_digest_digits);
   }
-  if (digest.empty()) return false;
+  if (digest.empty() && !is_own) return false;
   LinesDigest of_rows;
   while (std::getline(in, line)) of_rows.add(line);
   if (of_rows.word() == digest) return is_own;

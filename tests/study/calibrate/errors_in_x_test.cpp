@@ -5,8 +5,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,6 +20,7 @@
 #include "scenario/scenario.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/granule.hpp"
+#include "support/refusal.hpp"
 #include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
@@ -33,6 +38,8 @@ TEST(SharedErrors, GiveTheSumOfSquaresOfTheirCovariance) {
   const Eigen::VectorXd errors = SharedErrors(effects).take_from(left);
   EXPECT_NEAR(left.squaredNorm() + errors.squaredNorm(), expected, 1e-14 * expected);
   EXPECT_LT((left + effects * errors - residuals).norm(), 1e-14);
+  EXPECT_NEAR(SharedErrors(effects).log_determinant(), std::log(covariance.determinant()), 1e-14);
+  EXPECT_EQ(SharedErrors().log_determinant(), 0.0);
 }
 
 constexpr double k_modulus = 70e9;  // of k_hertz_text
@@ -41,10 +48,11 @@ double force_at(double displacement) { return hertz_force(k_modulus / (1.0 - 0.2
 
 class HertzWithNoise : public ::testing::Test {
  protected:
-  [[nodiscard]] CalibrationResult fit(const std::vector<double>& x, const std::string& noise) const {
+  [[nodiscard]] CalibrationResult fit(const std::vector<double>& x, const std::string& noise,
+                                      const std::string& of_fit = "") const {
     write_text(folder_.path() / "s.toml", k_hertz_text);
     std::string text = "displacement[m],force[N],error[N]\n";
-    for (const double at : x) text += fmt::format("{:.17g},{:.17g},3\n", at, force_at(at));
+    for (const double at : x) text += fmt::format("{:.17g},{:.17g},3\n", at, measured(at));
     write_text(folder_.path() / "d.csv", text);
     write_text(folder_.path() / "c.toml", fmt::format(R"(scenario = "s.toml"
 [data]
@@ -54,8 +62,9 @@ y = "force[N]"
 noise = {}
 [free]
 "material.youngs_modulus" = {{ from = "10 GPa", to = "300 GPa" }}
+{}
 )",
-                                                      noise));
+                                                      noise, of_fit));
     return calibrate(read_calibration(folder_.path() / "c.toml"));
   }
 
@@ -65,11 +74,18 @@ noise = {}
     return x;
   }
 
+  /// Mean force over a displacement with as much noise to either side: above the curve, which bends upwards.
+  static double mean_force(double x) { return std::midpoint(force_at(x - k_noise), force_at(x + k_noise)); }
+
+  static constexpr double k_noise = 0.9e-6;
+  std::function<double(double)> measured = force_at;  ///< force over displacement
+
  private:
   TemporaryFolder folder_;
 };
 
 TEST_F(HertzWithNoise, WeighsARowByTheSlopeAtIt) {
+  measured = mean_force;
   const std::vector<double> x = loading();
   const CalibrationResult result = fit(x, R"({ absolute = "4 N", x = "0.9 um" })");
   for (const std::size_t row : {0U, 5U}) EXPECT_EQ(result.weights[row], 0.25) << "nothing touches";
@@ -77,10 +93,10 @@ TEST_F(HertzWithNoise, WeighsARowByTheSlopeAtIt) {
     const double slope = 1.5 * force_at(x[row]) / x[row];
     EXPECT_NEAR(result.weights[row] * std::hypot(4.0, 9e-7 * slope), 1.0, 2e-4) << row;
   }
-  EXPECT_NEAR(result.solution.parameters[0] / k_modulus, 1.0, 1e-9);
 }
 
 TEST_F(HertzWithNoise, AddsNoiseOfXToAnyNoiseOfY) {
+  measured = mean_force;
   const std::vector<double> x = loading();
   const CalibrationResult by_column = fit(x, R"({ column = "error[N]", x = "0.9 um" })");
   const CalibrationResult by_parts = fit(x, R"({ absolute = "4 N", relative = 0.1, x = "0.9 um" })");
@@ -98,11 +114,48 @@ TEST_F(HertzWithNoise, HasTheErrorsOfNoiseOfYWhereThatOfXVanishes) {
   for (std::size_t row = 0; row < x.size(); ++row) EXPECT_NEAR(with.weights[row], without.weights[row], 1e-8) << row;
 }
 
-/// A granule with or without a hold at its first peak.
-class GranuleWithNoiseOfX : public ::testing::TestWithParam<bool> {
- protected:
-  GranuleWithNoiseOfX() {
-    const std::string text = GetParam() ? k_granule : replaced(k_granule, "{ hold = true, duration = 60 },", "");
+TEST_F(HertzWithNoise, KnowsTheMeanOfACurvedResponse) {
+  measured = mean_force;
+  std::vector<double> x;
+  for (int k = 10; k <= 200; ++k) x.push_back(5e-7 * k);
+  const double without = fit(x, R"({ absolute = "4 N" })").solution.parameters[0];
+  const double with = fit(x, R"({ absolute = "4 N", x = "0.9 um" })").solution.parameters[0];
+  EXPECT_GT(without / k_modulus - 1.0, 3e-5);
+  EXPECT_LT(std::abs(with / k_modulus - 1.0), 0.2 * (without / k_modulus - 1.0));
+}
+
+TEST_F(HertzWithNoise, FitsASingleRow) {
+  const CalibrationResult result = fit({1e-4}, R"({ absolute = "4 N", x = "0.9 um" })");
+  EXPECT_NEAR(result.solution.parameters[0] / k_modulus, 1.0, 1e-9);
+}
+
+TEST_F(HertzWithNoise, RefusesALossWhoseErrorsOfTurnsAreNotThoseOfLeastSquares) {
+  const std::string loss = "[fit]\nloss = \"huber\"\nloss_scale = 0.01";
+  EXPECT_NO_THROW(static_cast<void>(fit(loading(), R"({ absolute = "4 N" })", loss)));
+  try {
+    static_cast<void>(fit(loading(), R"({ absolute = "4 N", x = "0.9 um" })", loss));
+    ADD_FAILURE() << "it was taken";
+  } catch (const ScenarioError& error) {
+    EXPECT_TRUE(contains(error.what(), "loss = \"huber\" with noise of x")) << error.what();
+  }
+}
+
+TEST_F(HertzWithNoise, CountsItsOwnCovarianceWhereModelsAreCompared) {
+  std::vector<double> x = loading();
+  for (int k = 1; k <= 150; ++k) x.push_back(1e-4 - 5e-7 * k);
+  EXPECT_EQ(fit(x, R"({ absolute = "4 N" })").noise_growth, 0.0);
+  const CalibrationResult result = fit(x, R"({ absolute = "4 N", x = "0.9 um" })");
+  double of_rows = 0.0;
+  for (const double weight : result.weights) of_rows -= 2.0 * std::log(4.0 * weight);
+  EXPECT_GT(of_rows, 0.0);
+  EXPECT_GE(result.noise_growth, of_rows) << "the turn adds to it";
+}
+
+/// A granule that is pressed by a program, with noise of x of 0.2 um and of y of 0.15 N.
+class NoisyRecord {
+ public:
+  /// @param text  of the scenario
+  explicit NoisyRecord(const std::string& text) {
     write_text(folder_.path() / "s.toml", text);
     const Table history = run_scenario(parse_scenario(text, "s.toml")).record.history;
     for (std::size_t row = 0; row < history.row_count(); ++row) {
@@ -137,11 +190,34 @@ intervals = "{}"
     return calibrate(read_calibration(folder_.path() / "c.toml"));
   }
 
-  [[nodiscard]] const std::vector<double>& force() const noexcept { return force_; }
-
  private:
   TemporaryFolder folder_;
   std::vector<double> x_, force_;
+};
+
+TEST(NoiseOfX, ShiftsNoModulusHoweverManyRowsThereAre) {
+  const std::string text = k_granule;
+  const std::size_t steps = text.find("steps = [");
+  const NoisyRecord record(
+      replaced(text.substr(0, steps) +
+                   "steps = [{ displacement = \"0.15 R0\", duration = 60 }, { force = \"2 N\", duration = 60 }]\n" +
+                   text.substr(text.find("[output]")),
+               "points = 60", "points = 1000"));
+  constexpr unsigned k_sets = 12;
+  double mean = 0.0;  // deviation from the truth over its standard error
+  for (unsigned seed = 1; seed <= k_sets; ++seed) {
+    const CalibrationResult result = record.fit(seed, ", x = \"0.2 um\"", "covariance");
+    mean += (result.solution.parameters[0] - 2e9) / result.uncertainty.standard_error(0) / k_sets;
+  }
+  // With weights that do not follow the slope of the trial it is -1.3.
+  EXPECT_LT(std::abs(mean), 0.7);
+}
+
+/// A granule with or without a hold at its first peak.
+class GranuleWithNoiseOfX : public NoisyRecord, public ::testing::TestWithParam<bool> {
+ protected:
+  GranuleWithNoiseOfX()
+      : NoisyRecord(GetParam() ? k_granule : replaced(k_granule, "{ hold = true, duration = 60 },", "")) {}
 };
 
 INSTANTIATE_TEST_SUITE_P(Hold, GranuleWithNoiseOfX, ::testing::Bool(),
@@ -178,7 +254,10 @@ TEST_P(GranuleWithNoiseOfX, DrawsTheErrorsOfTurnsInABootstrap) {
   const CalibrationResult drawn = fit(3, ", x = \"0.2 um\"", "bootstrap");
   ASSERT_EQ(drawn.method, IntervalMethod::bootstrap);
   for (std::size_t k = 0; k < 2; ++k) {
-    EXPECT_NEAR(drawn.uncertainty.standard_error(k) / by_covariance.uncertainty.standard_error(k), 1.0, 0.2) << k;
+    const double error = by_covariance.uncertainty.standard_error(k);
+    EXPECT_NEAR(drawn.uncertainty.standard_error(k) / error, 1.0, 0.2) << k;
+    const double middle = std::midpoint(drawn.intervals[k].lower, drawn.intervals[k].upper);
+    EXPECT_NEAR(middle, drawn.solution.parameters[k], 0.3 * error) << k;
   }
 }
 
