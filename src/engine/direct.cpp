@@ -76,6 +76,7 @@ class Direct final : public EventLocator {
     begin_piece();
     system_.branch_reach(begin_state_, branch_reach_);
     has_branches_ = std::ranges::any_of(branch_reach_, [](double reach) { return std::isfinite(reach); });
+    if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
     double rest = k_rest;
     for (bool is_covered = false; !is_covered; rest = 0.0) {
       piece_end_ = 1.0 - begin_ <= (1.0 + rest) * length_ ? 1.0 : begin_ + length_;
@@ -84,7 +85,6 @@ class Direct final : public EventLocator {
       double factor = k_most_growth;
       bool ends_at_kink = false;
       try {
-        if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
         ends_at_kink = end_at_kink(rest);
         tried = piece_length();
         is_covered = cover_piece(factor);

@@ -24,8 +24,8 @@ struct IdaDeleter {
 };
 using IdaMemory = std::unique_ptr<void, IdaDeleter>;
 
-constexpr double k_dependent_tolerance =
-    1e-4;  // of dependent unknowns: loose, but small enough for difference quotients
+// Tolerance of dependent unknowns: loose, but small enough for difference quotients.
+constexpr double k_dependent_tolerance = 1e-4;
 // Share of a step's tolerance that the corrector may leave as an error: k_left_by_corrector, or up to
 // k_most_left_by_corrector (the library's own) if round-off leaves more than the former. With the library's share, the
 // differences of many steps show nothing but these errors: the order stays low, and steps do not become longer.

@@ -357,7 +357,7 @@ void write_csv(const std::filesystem::path& file, const Table& table) {
 Table read_csv(const std::filesystem::path& file, FileKind kind) {
   const std::string name = name_of_file(file, kind).string();
   auto [text, problem] = read_text_file(file, k_largest_csv, kind);
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+  if (has_wide_mark(text)) {
     DecodedText decoded = decode_text(text);
     text = std::move(decoded.text);
     problem = std::move(decoded.problem);

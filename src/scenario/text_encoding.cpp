@@ -104,4 +104,10 @@ DecodedText decode_text(std::string_view bytes) {
   return made;
 }
 
+bool has_wide_mark(std::string_view bytes) noexcept {
+  return std::ranges::any_of(k_marks, [bytes](const Mark& mark) {
+    return bytes.starts_with(mark.bytes) && std::string_view(mark.encoding) != "UTF-8";
+  });
+}
+
 }  // namespace monograin

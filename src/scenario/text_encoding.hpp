@@ -19,4 +19,7 @@ struct DecodedText {
 /// A lone "\r" ends a line in files without "\n". iconv (POSIX) converts the text.
 [[nodiscard]] DecodedText decode_text(std::string_view bytes);
 
+/// True if a byte order mark shows an encoding with more than one byte for each letter: UTF-16 or UTF-32.
+[[nodiscard]] bool has_wide_mark(std::string_view bytes) noexcept;
+
 }  // namespace monograin

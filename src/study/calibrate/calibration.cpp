@@ -54,14 +54,16 @@ class Fit {
       : calibration_(calibration),
         procedures_(model_fits(calibration)),
         response_(calibration.x.values.size()),
+        noise_of_y_(calibration.weights.size()),
         excesses_(calibration.x.values.size()),
         weights_(calibration.weights),
         trial_weights_(calibration.weights),
         prior_weight_(prior_weight) {
+    std::ranges::transform(weights_, noise_of_y_.begin(), [](double weight) { return 1.0 / weight; });
     for (const MeasuredCurve& curve : calibration.curves) {
       DataPath path = path_through(x_of(calibration, curve));
       std::vector<double> y = path.at_points(y_of(calibration, curve));
-      if (curve.noise.x > 0.0) errors_in_x_.emplace_back(calibration, curve, path);
+      if (curve.noise.x > 0.0) errors_in_x_.push_back({responses_.size(), ErrorsInX(calibration, curve, path)});
       responses_.emplace_back(calibration, curve, std::move(path), std::move(y));
     }
     for (std::size_t row = 0; row < calibration.weights.size(); ++row) {
@@ -133,44 +135,30 @@ class Fit {
   /// Weighs rows with noise of x by the slope of the last response. Weights that stayed as they were would make slopes
   /// too small (Lybanon (1984), Am. J. Phys. 52, 22).
   void weigh_by_slopes() {
-    auto errors = errors_in_x_.begin();
-    for (std::size_t c = 0; c < responses_.size(); ++c) {
+    for (auto& [c, errors] : errors_in_x_) {
       const MeasuredCurve& curve = calibration_.curves[c];
-      if (!(curve.noise.x > 0.0)) continue;
-      errors->follow(responses_[c]);
-      std::ranges::copy(errors->excesses(), rows_of(excesses_, curve).begin());
+      errors.follow(responses_[c]);
+      std::ranges::copy(errors.excesses(), rows_of(excesses_, curve).begin());
       for (std::size_t row = curve.begin; row < curve.end; ++row) {
-        trial_weights_[row] =
-            1.0 / std::hypot(deviation_of_y(row), curve.noise.x * errors->slopes()[row - curve.begin]);
+        trial_weights_[row] = 1.0 / std::hypot(noise_of_y_[row], curve.noise.x * errors.slopes()[row - curve.begin]);
       }
-      ++errors;
     }
-  }
-
-  /// Standard deviation of y alone, in proportion to the fit where it is relative.
-  [[nodiscard]] double deviation_of_y(std::size_t row) const {
-    return noise_of_y_.empty() ? 1.0 / calibration_.weights[row] : noise_of_y_[row];
   }
 
   /// Sets what depends on the fit by the last response: noise in proportion to y, weights, and the effects of turns. A
   /// fit that is far below the datum, as before first touch, does not make its noise small.
   /// @return true if weights have changed
   bool weigh_by_response(std::span<const double> parameters) {
-    noise_of_y_.resize(response_.size());
     for (const MeasuredCurve& curve : calibration_.curves) {
-      const NoiseParts& noise = curve.noise;
+      if (!(curve.noise.relative > 0.0)) continue;
       for (std::size_t row = curve.begin; row < curve.end; ++row) {
         const double size = std::max(std::abs(response_[row]), k_least_size * std::abs(calibration_.y.values[row]));
-        noise_of_y_[row] =
-            noise.relative > 0.0 ? std::hypot(noise.absolute, noise.relative * size) : 1.0 / calibration_.weights[row];
+        noise_of_y_[row] = std::hypot(curve.noise.absolute, curve.noise.relative * size);
         trial_weights_[row] = 1.0 / noise_of_y_[row];
       }
     }
     weigh_by_slopes();
-    auto errors = errors_in_x_.begin();
-    for (std::size_t c = 0; c < responses_.size(); ++c) {
-      if (calibration_.curves[c].noise.x > 0.0) (errors++)->move_turns(parameters, responses_[c]);
-    }
+    for (auto& [c, errors] : errors_in_x_) errors.move_turns(parameters, responses_[c]);
     const bool has_changed = !std::ranges::equal(trial_weights_, weights_, [](double trial, double weight) {
       return std::abs(trial - weight) <= k_same_weight * trial;
     });
@@ -179,23 +167,27 @@ class Fit {
     return has_changed;
   }
 
-  /// Sets the errors that rows share: those of turns of noisy x.
-  void set_shared_errors() {
+  /// Effects of the shared errors, those of turns of noisy x, on the response in every row.
+  [[nodiscard]] Eigen::MatrixXd effects_of_turns() const {
     Eigen::Index count = 0;
-    for (const ErrorsInX& errors : errors_in_x_) count += errors.of_turns().cols();
-    effects_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(response_.size()), count);
+    for (const auto& [c, errors] : errors_in_x_) count += errors.of_turns().cols();
+    Eigen::MatrixXd effects = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(response_.size()), count);
     Eigen::Index turn = 0;
-    auto errors = errors_in_x_.begin();
-    for (const MeasuredCurve& curve : calibration_.curves) {
-      if (!(curve.noise.x > 0.0)) continue;
-      const Eigen::MatrixXd& part = (errors++)->of_turns();
-      effects_.block(static_cast<Eigen::Index>(curve.begin), turn, part.rows(), part.cols()) = part;
+    for (const auto& [c, errors] : errors_in_x_) {
+      const Eigen::MatrixXd& part = errors.of_turns();
+      effects.block(static_cast<Eigen::Index>(calibration_.curves[c].begin), turn, part.rows(), part.cols()) = part;
       turn += part.cols();
     }
-    Eigen::MatrixXd weighted(static_cast<Eigen::Index>(rows_.size()), count);
+    return effects;
+  }
+
+  /// Sets the shared errors by their effects on weighted residuals.
+  void set_shared_errors() {
+    const Eigen::MatrixXd effects = effects_of_turns();
+    Eigen::MatrixXd weighted(static_cast<Eigen::Index>(rows_.size()), effects.cols());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const std::size_t row = rows_[i];
-      weighted.row(static_cast<Eigen::Index>(i)) = weights_[row] * effects_.row(static_cast<Eigen::Index>(row));
+      weighted.row(static_cast<Eigen::Index>(i)) = weights_[row] * effects.row(static_cast<Eigen::Index>(row));
     }
     shared_ = SharedErrors(std::move(weighted));
   }
@@ -523,7 +515,8 @@ class Fit {
     result.fit = {calibration_.x.values, response_, bands(result, gradients)};
     const Eigen::Map<const Eigen::VectorXd> residuals(result.solution.residuals.data(),
                                                       static_cast<Eigen::Index>(result.solution.residuals.size()));
-    Eigen::Map<Eigen::VectorXd>(result.fit.y.data(), effects_.rows()) += effects_ * residuals.tail(effects_.cols());
+    Eigen::Map<Eigen::VectorXd>(result.fit.y.data(), static_cast<Eigen::Index>(result.fit.y.size())) +=
+        effects_of_turns() * residuals.tail(shared_.count());
     std::ranges::transform(result.fit.y, excesses_, result.fit.y.begin(), std::plus<>());
     result.weights = weights_;
     if (!calibration_.has_machine()) return;
@@ -597,22 +590,26 @@ class Fit {
     }
   }
 
+  struct ErrorsOfCurve {
+    std::size_t curve = 0;  ///< one with noise of x
+    ErrorsInX errors;
+  };
+
   const Calibration& calibration_;
   ModelFits procedures_;
-  std::vector<Response> responses_;     ///< one for each curve
-  std::vector<double> response_;        ///< in every row of the last run
-  std::vector<double> noise_of_y_;      ///< of y in every row, by the last fit; empty before the first one
-  std::vector<double> excesses_;        ///< in every row, of the mean of y over the noise of x
-  std::vector<ErrorsInX> errors_in_x_;  ///< of the curves with noise of x
-  Eigen::MatrixXd effects_;             ///< of the shared errors on the response in every row
-  SharedErrors shared_;                 ///< errors of turns, by their effects on weighted residuals
-  std::vector<double> weights_;         ///< of every row, at the last fit
-  std::vector<double> trial_weights_;   ///< of every row, at the last response
-  std::vector<std::size_t> rows_;       ///< rows that count
-  std::vector<std::size_t> priors_;     ///< indices of the parameters whose priors are residuals
-  bool is_kinked_ = false;              ///< the sum of squares has a kink near its minimum
-  double prior_weight_;                 ///< standard deviation of weighted residuals
-  std::vector<std::string> notes_;      ///< on the intervals
+  std::vector<Response> responses_;  ///< one for each curve
+  std::vector<double> response_;     ///< in every row of the last run
+  std::vector<double> noise_of_y_;   ///< standard deviation of y in every row, at the last fit if it is relative
+  std::vector<double> excesses_;     ///< in every row, of the mean of y over the noise of x
+  std::vector<ErrorsOfCurve> errors_in_x_;
+  SharedErrors shared_;                ///< errors of turns, by their effects on weighted residuals
+  std::vector<double> weights_;        ///< of every row, at the last fit
+  std::vector<double> trial_weights_;  ///< of every row, at the last response
+  std::vector<std::size_t> rows_;      ///< rows that count
+  std::vector<std::size_t> priors_;    ///< indices of the parameters whose priors are residuals
+  bool is_kinked_ = false;             ///< the sum of squares has a kink near its minimum
+  double prior_weight_;                ///< standard deviation of weighted residuals
+  std::vector<std::string> notes_;     ///< on the intervals
   LeastSquaresProblem problem_;
 };
 

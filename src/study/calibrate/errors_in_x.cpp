@@ -57,10 +57,11 @@ void ErrorsInX::expand(std::size_t row, std::span<const double> y) {
           : noise_ * noise_ * ((y[after] - y[point]) / ahead - (y[point] - y[before]) / behind) / (ahead + behind);
 }
 
-bool ErrorsInX::respond_with(std::span<const double> parameters, std::size_t point, double error) {
+bool ErrorsInX::respond_with(std::span<const double> parameters, std::size_t point, double error,
+                             const std::vector<double>& measured) {
   DataPath moved = path_;
   moved.x[point] += error;
-  Response response(calibration_, curve_, std::move(moved), path_.at_points(y_of(calibration_, curve_)));
+  Response response(calibration_, curve_, std::move(moved), measured);
   return response(parameters, moved_);
 }
 
@@ -72,12 +73,13 @@ void ErrorsInX::follow(const Response& response) {
 
 void ErrorsInX::move_turns(std::span<const double> parameters, const Response& response) {
   const std::span<const double> y = response.at_points();
+  const std::vector<double> measured = path_.at_points(y_of(calibration_, curve_));
   for (std::size_t turn = 0; turn < turns_.size(); ++turn) {
     const auto [end, error] = turns_[turn];
     auto column = of_turns_.col(static_cast<Eigen::Index>(turn));
     column.setZero();
     for (const double side : {1.0, -1.0}) {
-      if (!respond_with(parameters, end, side * error)) continue;
+      if (!respond_with(parameters, end, side * error, measured)) continue;
       for (std::size_t row = 0; row < slopes_.size(); ++row) {
         const std::size_t point = path_.point_of[row];
         // A row that lies at the turn without being held there stays behind.

@@ -48,7 +48,9 @@ class ErrorsInX {
   /// Sets slope and excess of a row.
   void expand(std::size_t row, std::span<const double> y);
   /// Moves a turn by an error. @return false if the scenario cannot follow
-  [[nodiscard]] bool respond_with(std::span<const double> parameters, std::size_t point, double error);
+  /// @param measured  y at the points of the path
+  [[nodiscard]] bool respond_with(std::span<const double> parameters, std::size_t point, double error,
+                                  const std::vector<double>& measured);
 
   const Calibration& calibration_;
   const MeasuredCurve& curve_;

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 #include <sys/file.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -40,7 +39,6 @@ constexpr const char* k_journal_extension = ".journal";
 constexpr std::string_view k_program_line = "# program: monograin ";
 constexpr const char* k_digest_line = "# sweep_digest: ";
 constexpr std::string_view k_rows_digest_line = "# rows_digest: ";
-constexpr std::size_t k_digest_digits = 16;
 constexpr const char* k_refused = "refused";  // status of a run whose scenario has faults
 /// Tables that are made from the results, each with a figure of the same name.
 constexpr std::array k_made_from_results{k_bands_file, k_sensitivities_file};
@@ -194,16 +192,6 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
   return cells;
 }
 
-/// Digest of lines.
-class LinesDigest {
- public:
-  void add(std::string_view line) { value_ = XXH3_64bits_withSeed(line.data(), line.size(), value_); }
-  [[nodiscard]] std::string word() const { return fmt::format("{:016x}", value_); }
-
- private:
-  std::uint64_t value_ = 0;
-};
-
 /// True if a folder has the results of this sweep.
 /// @throws std::runtime_error if it has results, of this or another sweep, that were changed after they were written
 [[nodiscard]] bool has_results(const Sweep& sweep, const fs::path& folder) {
@@ -214,7 +202,7 @@ class LinesDigest {
   std::string digest;
   while (in.peek() == '#' && std::getline(in, line)) {
     is_own |= line == k_digest_line + sweep.digest;
-    if (line.starts_with(k_rows_digest_line)) digest = line.substr(k_rows_digest_line.size(), k_digest_digits);
+    if (line.starts_with(k_rows_digest_line)) digest = line.substr(k_rows_digest_line.size(), LinesDigest::k_digits);
   }
   if (digest.empty() && !is_own) return false;
   LinesDigest of_rows;

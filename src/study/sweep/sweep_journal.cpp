@@ -23,21 +23,23 @@ namespace fs = std::filesystem;
 constexpr std::string_view k_journal = "monograin-sweep";
 constexpr std::string_view k_columns = "columns";
 constexpr std::string_view k_row = "row";
-constexpr std::size_t k_digest_length = 16;
 
 [[noreturn]] void fail(const fs::path& file, std::string_view problem) {
   throw std::runtime_error(fmt::format("{}: {}", file.string(), problem));
 }
 
 [[nodiscard]] std::string line_digest(std::string_view payload) {
-  return fmt::format("{:016x}", XXH3_64bits(payload.data(), payload.size()));
+  LinesDigest digest;
+  digest.add(payload);
+  return digest.word();
 }
 
 /// Content of a line without its digest; none if the line was not written completely.
 [[nodiscard]] std::optional<std::string_view> payload_of(std::string_view line) {
-  if (line.size() <= k_digest_length || line[k_digest_length] != ' ') return std::nullopt;
-  const std::string_view payload = line.substr(k_digest_length + 1);
-  return line.substr(0, k_digest_length) == line_digest(payload) ? std::optional(payload) : std::nullopt;
+  constexpr std::size_t k_digits = LinesDigest::k_digits;
+  if (line.size() <= k_digits || line[k_digits] != ' ') return std::nullopt;
+  const std::string_view payload = line.substr(k_digits + 1);
+  return line.substr(0, k_digits) == line_digest(payload) ? std::optional(payload) : std::nullopt;
 }
 
 /// Removes the first cell, up to the next comma, from the text and returns it.
@@ -55,6 +57,12 @@ std::string_view take_cell(std::string_view& text) {
 }
 
 }  // namespace
+
+void LinesDigest::add(std::string_view line) noexcept {
+  value_ = XXH3_64bits_withSeed(line.data(), line.size(), value_);
+}
+
+std::string LinesDigest::word() const { return fmt::format("{:0{}x}", value_, k_digits); }
 
 SweepRecord::SweepRecord(const fs::path& file, const std::string& digest)
     : file_(file), stream_(file, std::ios::binary) {

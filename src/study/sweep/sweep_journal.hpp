@@ -6,10 +6,23 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
 namespace monograin {
+
+/// Digest of lines, in the order in which they are added.
+class LinesDigest {
+ public:
+  static constexpr std::size_t k_digits = 16;  ///< of word()
+
+  void add(std::string_view line) noexcept;
+  [[nodiscard]] std::string word() const;
+
+ private:
+  std::uint64_t value_ = 0;
+};
 
 /// Result of one run. Texts are as in the results: cells with commas between them, nothing quoted.
 struct SweepRow {

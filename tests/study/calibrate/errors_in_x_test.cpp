@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <numeric>
 #include <random>
@@ -42,6 +43,20 @@ TEST(SharedErrors, GiveTheSumOfSquaresOfTheirCovariance) {
   EXPECT_EQ(SharedErrors().log_determinant(), 0.0);
 }
 
+/// Fits the data of a folder, d.csv, with its scenario, s.toml.
+/// @param rest  tables [free] and [fit]
+CalibrationResult fit_of(const std::filesystem::path& folder, const std::string& noise, const std::string& rest) {
+  write_text(folder / "c.toml", fmt::format(R"(scenario = "s.toml"
+[data]
+file = "d.csv"
+x = "displacement[m]"
+y = "force[N]"
+noise = {}
+{})",
+                                            noise, rest));
+  return calibrate(read_calibration(folder / "c.toml"));
+}
+
 constexpr double k_modulus = 70e9;  // of k_hertz_text
 
 double force_at(double displacement) { return hertz_force(k_modulus / (1.0 - 0.22 * 0.22), 0.01, displacement); }
@@ -54,18 +69,12 @@ class HertzWithNoise : public ::testing::Test {
     std::string text = "displacement[m],force[N],error[N]\n";
     for (const double at : x) text += fmt::format("{:.17g},{:.17g},3\n", at, measured(at));
     write_text(folder_.path() / "d.csv", text);
-    write_text(folder_.path() / "c.toml", fmt::format(R"(scenario = "s.toml"
-[data]
-file = "d.csv"
-x = "displacement[m]"
-y = "force[N]"
-noise = {}
-[free]
+    return fit_of(folder_.path(), noise,
+                  fmt::format(R"([free]
 "material.youngs_modulus" = {{ from = "10 GPa", to = "300 GPa" }}
 {}
 )",
-                                                      noise, of_fit));
-    return calibrate(read_calibration(folder_.path() / "c.toml"));
+                              of_fit));
   }
 
   static std::vector<double> loading() {
@@ -174,20 +183,14 @@ class NoisyRecord {
           fmt::format("{:.9f},{:.3f}\n", x_[row] + 2e-7 * normal(generator), force_[row] + 0.15 * normal(generator));
     }
     write_text(folder_.path() / "d.csv", text);
-    write_text(folder_.path() / "c.toml", fmt::format(R"(scenario = "s.toml"
-[data]
-file = "d.csv"
-x = "displacement[m]"
-y = "force[N]"
-noise = {{ absolute = "0.15 N"{} }}
-[fit]
+    return fit_of(folder_.path(), fmt::format(R"({{ absolute = "0.15 N"{} }})", noise_of_x),
+                  fmt::format(R"([fit]
 intervals = "{}"
 [free]
 "material.youngs_modulus" = {{ from = "0.1 GPa", to = "10 GPa" }}
 "material.yield_stress" = {{ from = "1 MPa", to = "200 MPa" }}
 )",
-                                                      noise_of_x, method));
-    return calibrate(read_calibration(folder_.path() / "c.toml"));
+                              method));
   }
 
  private:
