@@ -63,8 +63,8 @@ void CoreLoad::evaluate(double yield_stress) noexcept {
   per_s = 1.0 / s;
   use = s * per_S;
   Q = raised<k::n2>(use);
-  const double pace = static_cast<double>(k::n2) / k::n1 * Q * per_s;
-  flow = {.C = -2.0 * pace * 0.375 * per_s * symmetric(T * core.C), .e = 0.5 * pace};
+  const double multiplier = static_cast<double>(k::n2) / k::n1 * Q * per_s;
+  flow = {.C = -2.0 * multiplier * 0.375 * per_s * symmetric(T * core.C), .e = 0.5 * multiplier};
 }
 
 Yield yield_of(const Contact& contact, const CoreLoad& load, const Eigen::Matrix3d& wall) noexcept {

@@ -65,7 +65,6 @@ bool will_touch(const Particle& p, const Motion& motion, std::size_t i, double x
 void decide_flow(Particle& p, Motion& motion, double xi, std::span<const double> y, std::vector<bool>& may_flow) {
   for (ClassState& c : p.classes) c.flows = false;
   for (bool has_changed = true; has_changed;) {
-    p.forget();
     motion.evaluate(p, xi, y);
     const auto dent_rate = [&](std::size_t i) { return motion.rates()[p.layout().dent(i)]; };
     double worst = 0.0;
@@ -84,7 +83,7 @@ void decide_flow(Particle& p, Motion& motion, double xi, std::span<const double>
 }
 
 double value_of(const Guard& guard, const Particle& p, const Motion& motion, double xi) {
-  const std::size_t i = guard.place();
+  const std::size_t i = guard.list_index();
   const ClassState& c = p.classes[i];
   const double dent_rate = motion.rates()[p.layout().dent(i)];
   switch (guard.kind) {

@@ -18,7 +18,10 @@ class Motion {
   /// beyond the fold, where the determinant of the equations has changed its sign
   double evaluate(Particle& p, double xi, std::span<const double> y);
   /// Declares from which step coordinate on the contacts that flow do so.
-  void begin_flow(double xi) noexcept { flow_begin_ = xi; }
+  void begin_flow(double xi) noexcept {
+    flow_begin_ = xi;
+    xi_ = k_nan;
+  }
 
   [[nodiscard]] double margin() const noexcept { return margin_; }
   /// Rates of all unknowns up to the core, then Lam.

@@ -28,7 +28,10 @@ Particle::Particle(const Material& material, double poisson_ratio, std::span<con
     Eigen::Matrix3d& spread = spreads.emplace_back(Eigen::Matrix3d::Zero());
     for (const Eigen::Vector3d& normal : c.normals) spread += normal * normal.transpose();
     const Eigen::Vector3d& normal = c.normals.front();
-    classes.push_back({.count = c.multiplicity(), .wall = normal * normal.transpose(), .spread = spread});
+    ClassState& state = classes.emplace_back();
+    state.count = c.multiplicity();
+    state.wall = normal * normal.transpose();
+    state.spread = spread;
   }
   shapes_ = core_shapes(spreads);
   layout_ = {size(), centre.directions(), shapes_.size()};
@@ -58,7 +61,6 @@ void Particle::release_wall(std::size_t i, std::span<double> y) {
   classes[i].is_released = true;
   classes[i].drive = contacts::WallDrive({0.0, 0.0, Control::force}, 1.0);
   y[i] = 0.0;
-  forget();
 }
 
 std::optional<std::vector<std::size_t>> Particle::leave_walls(std::span<double> y) {
@@ -84,7 +86,7 @@ std::optional<std::vector<std::size_t>> Particle::leave_walls(std::span<double> 
   for (std::size_t k = 0; k < layout_.directions; ++k) y[layout_.centre(k)] += move[static_cast<Eigen::Index>(k)];
   for (const std::size_t i : left) y[i] = -gap;
   centre.rest_at(layout_.centre_of(y));
-  forget();
+  ++revision_;
   std::erase_if(left, [this](std::size_t i) { return !std::exchange(classes[i].touches, false); });
   return left;
 }
@@ -97,13 +99,15 @@ void Particle::prescribe(double xi, std::span<double> y) const noexcept {
 
 void Particle::evaluate(std::span<const double> y, bool with_yield) {
   y = y.first(layout_.size());
-  if (!std::ranges::equal(y, y_)) {
-    forget();
+  const auto is_in_this_mode = [](const ClassState& c) { return c == c.evaluated_mode; };
+  if (!std::ranges::equal(y, y_) || !std::ranges::all_of(classes, is_in_this_mode)) {
+    y_.clear();
     ++revision_;
     has_yield_ = false;
     x_ = layout_.centre_of(y);
     evaluate_contacts(y);
     evaluate_displacements();
+    for (ClassState& c : classes) c.evaluated_mode = c;
     y_.assign(y.begin(), y.end());
   }
   if (!with_yield || has_yield_) return;
@@ -162,7 +166,7 @@ void Particle::evaluate_yield(std::span<const double> y) {
   }
   for (ClassState& c : classes) {
     c.yield = yield_of(c.contact, load_, c.wall);
-    c.pace = c.yield.X > 0.0 ? c.count * c.contact.F * (1.0 - c.yield.b) / c.yield.X * c.dent.h_zeta : 0.0;
+    c.flow_by_dent = c.yield.X > 0.0 ? c.count * c.contact.F * (1.0 - c.yield.b) / c.yield.X * c.dent.h_zeta : 0.0;
   }
 }
 
@@ -197,7 +201,7 @@ double Particle::l_by_flow(std::size_t i) const noexcept { return 0.5 * classes[
 double Particle::flow_rate(std::span<const double> dy) const noexcept {
   double Lam = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
-    if (classes[i].flows) Lam += classes[i].pace * dy[layout_.dent(i)];
+    if (classes[i].flows) Lam += classes[i].flow_by_dent * dy[layout_.dent(i)];
   }
   return Lam;
 }

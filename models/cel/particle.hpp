@@ -35,7 +35,7 @@ struct Layout {
   std::size_t shapes = 0;      ///< shapes of the core; 0: it keeps its shape, and is no unknown
 
   [[nodiscard]] std::size_t dent(std::size_t i) const noexcept { return classes + i; }
-  [[nodiscard]] bool is_dent(std::size_t place) const noexcept { return place >= classes && place < 2 * classes; }
+  [[nodiscard]] bool is_dent(std::size_t k) const noexcept { return k >= classes && k < 2 * classes; }
   [[nodiscard]] std::size_t centre(std::size_t k) const noexcept { return 2 * classes + k; }
   /// First index of the core: the components of C - 1 among its shapes, then e.
   [[nodiscard]] std::size_t core() const noexcept { return 2 * classes + directions; }
@@ -49,18 +49,28 @@ struct Layout {
   }
 };
 
-/// One class of walls, and each of its contacts.
-struct ClassState {
-  double count = 0.0;      ///< number of walls
-  Eigen::Matrix3d wall;    ///< n n of the first wall
-  Eigen::Matrix3d spread;  ///< sum of n n over all walls
-
+/// What a class of walls does in a mode.
+struct ClassMode {
   contacts::WallDrive drive{};
   bool is_released = false;  ///< the wall bears no force: it rests until the surface meets it, then moves along
   bool touches = false;
   bool flows = false;  ///< the dent grows
 
+  /// True if the own coordinate is the force F, not u.
+  [[nodiscard]] bool is_force_controlled() const noexcept { return drive.is_force_controlled(); }
+  /// Lets the wall rest at a displacement.
+  void hold(double at) { drive = contacts::WallDrive({at, at, Control::displacement}, 1.0); }
+  [[nodiscard]] bool operator==(const ClassMode&) const = default;
+};
+
+/// One class of walls, and each of its contacts.
+struct ClassState : ClassMode {
+  double count = 0.0;      ///< number of walls
+  Eigen::Matrix3d wall;    ///< n n of the first wall
+  Eigen::Matrix3d spread;  ///< sum of n n over all walls
+
   // At the state that was evaluated.
+  ClassMode evaluated_mode{};
   double coordinate = 0.0;
   Dent dent{};
   double l = 1.0, per_l = 1.0;  ///< support distance of the core under the wall
@@ -68,12 +78,8 @@ struct ClassState {
   Contact contact{};
   double displacement = 0.0;  ///< displacement of the wall, by (K)
   Yield yield{};
-  double pace = 0.0;  ///< Lam per rate of the dent, if the dent grows
+  double flow_by_dent = 0.0;  ///< Lam per rate of the dent, if the dent grows
 
-  /// True if the own coordinate is the force F, not u.
-  [[nodiscard]] bool is_force_controlled() const noexcept { return drive.is_force_controlled(); }
-  /// Lets the wall rest at a displacement.
-  void hold(double at) { drive = contacts::WallDrive({at, at, Control::displacement}, 1.0); }
   /// Displacement of the wall at the state that was evaluated; exact if it is prescribed.
   [[nodiscard]] double position(double xi) const noexcept {
     return is_force_controlled() ? displacement : drive.value(xi);
@@ -110,9 +116,7 @@ class Particle {
   /// Writes the prescribed forces into a state.
   void prescribe(double xi, std::span<double> y) const noexcept;
 
-  /// Drops the cached evaluation. To be called when a program or a mode changes.
-  void forget() noexcept { y_.clear(); }
-  /// Evaluates all equations at a state, unless the cached evaluation is for that state.
+  /// Evaluates all equations at a state, unless the cached evaluation is for that state and the present mode.
   /// @param with_yield  false: leaves out the core's load and the yield functions, which elastic motion does not need
   /// @throws std::domain_error where the core or a dent has no size
   void evaluate(std::span<const double> y, bool with_yield = true);

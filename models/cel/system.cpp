@@ -38,14 +38,14 @@ std::vector<Unknown> unknowns_of(const Particle& p, std::span<const ContactClass
   const double depth = p.depth();
   std::vector<Unknown> unknowns;
   for (const ContactClass& c : classes)
-    unknowns.push_back({.name = c.name, .kind = differential, .scale = depth, .is_implicitly_algebraic = true});
+    unknowns.push_back({.name = c.name, .kind = differential, .scale = depth, .is_algebraic_in_residual = true});
   for (std::size_t i = 0; i < classes.size(); ++i)
     unknowns.push_back({.name = "dent", .kind = differential, .scale = std::sqrt(depth)});
   for (std::size_t k = 0; k < p.layout().directions; ++k)
     unknowns.push_back({.name = contacts::k_centre_unknowns[k],
                         .kind = differential,
                         .scale = depth,
-                        .is_implicitly_algebraic = true,
+                        .is_algebraic_in_residual = true,
                         .may_be_undetermined = true});
   while (unknowns.size() < p.layout().size()) unknowns.push_back({.name = "core", .kind = differential});
   // Scale of the work: that of elastic contacts or of contacts that flow, whichever is less.
@@ -76,7 +76,7 @@ System::System(const ModelInput& input, std::vector<ContactClass> classes, const
       unknowns_(unknowns_of(particle_, classes_)),
       columns_(true, true, k_regime_words, classes_, centre_is_free_,
                std::array<Observable, 2>{{{"core_strain", "-", {}}, {"coverage", "-", {}}}}),
-      work_place_(particle_.layout().size()),
+      work_slot_(particle_.layout().size()),
       last_(unknowns_.size()),
       trial_(unknowns_.size()),
       state_(unknowns_.size()) {}
@@ -90,7 +90,6 @@ void System::start(std::span<double> y) {
     c.flows = c.is_released = c.touches = false;
     c.hold(y[i]);
   }
-  particle_.forget();
   has_begun_ = false;
   deepest_ = least_stored_ = 0.0;
 }
@@ -103,7 +102,7 @@ void System::complete(double xi, std::span<double> y) {
   // Begins with the last solution: its dents and core are without the round-off of integrators, and it is a better
   // guess than y, in which the unknowns rest.
   std::ranges::copy(y, trial_.begin());
-  std::copy_n(last_.begin(), work_place_, y.begin());
+  std::copy_n(last_.begin(), work_slot_, y.begin());
   try {
     solve(xi, y);
   } catch (const std::domain_error&) {
@@ -123,7 +122,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
     std::ranges::copy(motion_.drawn_rates(), dy.begin());
   else
     std::ranges::fill(dy, 0.0);
-  dy[work_place_] = motion_.power();
+  dy[work_slot_] = motion_.power();
 }
 
 void System::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
@@ -144,7 +143,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     for (std::size_t j = layout.core(); j < layout.size(); ++j) res[j] = dy[j] - state_[j];
     motion_.evaluate(particle_, xi, y);
   }
-  res[work_place_] = dy[work_place_] - motion_.power();
+  res[work_slot_] = dy[work_slot_] - motion_.power();
 }
 
 /// In elastic motion the work equals the stored energy, up to a constant.
@@ -176,7 +175,6 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   particle_.evaluate(y);
   const Eigen::ArrayX2d before = direction_of(particle_);
   for (std::size_t i = 0; i < ramps.size(); ++i) set_ramp(i, ramps[i], y);
-  particle_.forget();
   // If the new step continues in the direction of the last one, the spring keeps its rest position.
   const double turn = (direction_of(particle_) - before).abs().maxCoeff();
   if (turn > k_same_direction || particle_.centre.follows()) particle_.centre.rest_at(particle_.layout().centre_of(y));
@@ -224,7 +222,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
       return end_at(guard, particle_, xi);
     }
     if (guard.kind > k_lost) continue;
-    const std::size_t i = guard.place();
+    const std::size_t i = guard.list_index();
     ClassState& c = particle_.classes[i];
     c.touches = guard.kind == k_made && !c.is_released;
     if (!guard.is_silent) log.push_back({guard.name, guard.index});
@@ -276,8 +274,8 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   contacts::Energies energies = contacts::k_no_energies;
   if (has_energies()) {
     const double energy_unit = force_unit_ * length_;
-    energies = {y[work_place_] * energy_unit, particle_.stored_energy() * energy_unit};
-    if (y[work_place_] > 0.0) least_stored_ = std::min(least_stored_, particle_.stored_energy() / y[work_place_]);
+    energies = {y[work_slot_] * energy_unit, particle_.stored_energy() * energy_unit};
+    if (y[work_slot_] > 0.0) least_stored_ = std::min(least_stored_, particle_.stored_energy() / y[work_slot_]);
   }
   const auto shown = [&](std::size_t i) {
     const contacts::VisibleContact contact = visible(i, xi);

@@ -69,7 +69,7 @@ class System final : public HybridSystem {
   GuardSet guards_;
   std::vector<Unknown> unknowns_;
   contacts::Columns columns_;
-  std::size_t work_place_;
+  std::size_t work_slot_;
 
   bool has_begun_ = false;
   double deepest_ = 0.0;               ///< largest overlap in a row so far, over R0

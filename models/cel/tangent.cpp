@@ -58,7 +58,7 @@ void Tangent::set(const Particle& p, bool core_flows) {
   }
 
   moving_.clear();
-  pace_.setZero(Om_);
+  flow_by_.setZero(Om_);
   for (std::size_t i = 0; i < p.size(); ++i) {
     add_kinematics(p, i);
     moving_.push_back(i);
@@ -71,7 +71,7 @@ void Tangent::set(const Particle& p, bool core_flows) {
     if (!p.classes[i].flows) continue;
     add_yield(p, i);
     moving_.push_back(layout.dent(i));
-    if (core_flows) pace_[layout.dent(i)] = p.classes[i].pace;
+    if (core_flows) flow_by_[layout.dent(i)] = p.classes[i].flow_by_dent;
   }
   const std::size_t n = moving_.size();
   equations_.resize(n, n + 2);
@@ -80,7 +80,7 @@ void Tangent::set(const Particle& p, bool core_flows) {
     const double by_Lam = by[Lam_] + by[Om_] * Om_by_[Lam_];
     for (std::size_t column = 0; column < n; ++column) {
       const std::size_t j = moving_[column];
-      equations_(row, column) = by[j] + by[Om_] * Om_by_[j] + by_Lam * pace_[j];
+      equations_(row, column) = by[j] + by[Om_] * Om_by_[j] + by_Lam * flow_by_[j];
     }
     if (row < p.size() && p.classes[row].is_force_controlled())
       equations_.row(row) = Eigen::RowVectorXd::Unit(n + 2, row);
@@ -96,8 +96,8 @@ double Tangent::solve(const Eigen::MatrixX2d& right, Eigen::MatrixX2d& solutions
   return sign;
 }
 
-std::span<double> Tangent::new_row(std::size_t place) noexcept {
-  const std::span row(&residual_by_(place, 0), Lam_ + 1);
+std::span<double> Tangent::new_row(std::size_t equation) noexcept {
+  const std::span row(&residual_by_(equation, 0), Lam_ + 1);
   std::ranges::fill(row, 0.0);
   return row;
 }
@@ -158,8 +158,8 @@ void Tangent::add_yield(const Particle& p, std::size_t i) {
 }
 
 /// Rate of a residual.
-double Tangent::rate_of(std::size_t place, std::span<const double> rates) const noexcept {
-  const double* by = &residual_by_(place, 0);
+double Tangent::rate_of(std::size_t equation, std::span<const double> rates) const noexcept {
+  const double* by = &residual_by_(equation, 0);
   double rate = rates[Om_] * (by[Lam_] + by[Om_] * Om_by_[Lam_]);
   for (std::size_t j = 0; j < Om_; ++j) rate += rates[j] * (by[j] + by[Om_] * Om_by_[j]);
   return rate;

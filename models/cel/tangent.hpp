@@ -35,21 +35,21 @@ class Tangent {
   [[nodiscard]] double yield_rate(const Particle& p, std::size_t i, std::span<const double> rates);
 
  private:
-  [[nodiscard]] std::span<double> new_row(std::size_t place) noexcept;
+  [[nodiscard]] std::span<double> new_row(std::size_t equation) noexcept;
   void add(const Particle& p, std::size_t i, const Slopes& by, double factor, std::span<double> row) const noexcept;
   void add_kinematics(const Particle& p, std::size_t i);
   void add_balance(const Particle& p, std::size_t equation);
   void add_yield(const Particle& p, std::size_t i);
-  [[nodiscard]] double rate_of(std::size_t place, std::span<const double> rates) const noexcept;
+  [[nodiscard]] double rate_of(std::size_t equation, std::span<const double> rates) const noexcept;
 
   // A row holds derivatives by the unknowns up to the core, by the coverage Om, and by the flow Lam.
   std::size_t Om_ = 0, Lam_ = 0;  ///< last columns
   RowMatrix residual_by_;
-  Eigen::VectorXd Om_by_;  ///< derivatives of Om by the unknowns, and by Lam in the last place
+  Eigen::VectorXd Om_by_;  ///< derivatives of Om by the unknowns, and by Lam at the end
   Eigen::VectorXd l_by_flow_;
   Eigen::Matrix3d pushes_by_flow_;  ///< at given forces
   std::vector<std::size_t> moving_;
-  Eigen::VectorXd pace_;  ///< Lam per rate of an unknown
+  Eigen::VectorXd flow_by_;  ///< Lam per rate of an unknown
   RowMatrix equations_;
 };
 

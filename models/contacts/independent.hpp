@@ -74,10 +74,10 @@ class IndependentContacts final : public HybridSystem {
     for (std::size_t i = 0; i < classes_.size(); ++i) {
       if (!classes_[i].takes_force) continue;
       slots_[i] = unknowns_.size();
-      unknowns_.push_back({classes_[i].name, Unknown::Kind::differential, scales_.coordinate, true});
+      unknowns_.push_back({.name = classes_[i].name, .scale = scales_.coordinate, .is_algebraic_in_residual = true});
     }
     work_slot_ = unknowns_.size();
-    unknowns_.push_back({"work", Unknown::Kind::quadrature, scales_.magnitudes.work, false});
+    unknowns_.push_back({.name = "work", .kind = Unknown::Kind::quadrature, .scale = scales_.magnitudes.work});
     if (settings.centre_is_free) centre_.emplace(classes_, scales_.reach, unknowns_);
     trial_.resize(unknowns_.size());
   }
@@ -199,7 +199,7 @@ class IndependentContacts final : public HybridSystem {
     for (std::size_t g = 0; g < guards_.list().size(); ++g) {
       const Guard& guard = guards_.list()[g];
       const double target = guards_.target(g);
-      const std::size_t i = guard.place();
+      const std::size_t i = guard.list_index();
       if (follows_centre(i)) {
         values[g] = centre_->guard_value(law_, contacts_, i, guard.kind, target, xi, y, velocity);
         continue;
@@ -214,7 +214,7 @@ class IndependentContacts final : public HybridSystem {
                                 std::vector<Event>& log) override {
     for (const std::size_t g : fired) {
       const Guard& guard = guards_.list()[g];
-      const std::size_t i = guard.place();
+      const std::size_t i = guard.list_index();
       Contact& c = contacts_[i];
       std::optional<DomainEnd> end;
       if (guard.kind == k_made)
@@ -362,7 +362,7 @@ class IndependentContacts final : public HybridSystem {
                                      std::span<const std::size_t> fired) {
     if (!centre_) return std::nullopt;
     const auto is_decided = [&](std::size_t i) {
-      return std::ranges::any_of(fired, [&](std::size_t g) { return guards_.list()[g].place() == i; });
+      return std::ranges::any_of(fired, [&](std::size_t g) { return guards_.list()[g].list_index() == i; });
     };
     return centre_->find(
         law_, contacts_, xi, y, is_decided, [this](std::size_t i) { return is_seen(i); }, log);

@@ -18,6 +18,7 @@ class WallDrive {
   WallDrive(const Ramp& ramp, double unit)
       : ramp_{ramp.start / unit, ramp.end / unit, ramp.control}, direction_(ramp_.direction()) {}
 
+  [[nodiscard]] bool operator==(const WallDrive&) const = default;
   [[nodiscard]] bool is_force_controlled() const noexcept { return ramp_.is_force_controlled(); }
   [[nodiscard]] double start() const noexcept { return ramp_.start; }
   [[nodiscard]] double end() const noexcept { return ramp_.end; }

@@ -268,7 +268,7 @@ double lost_guard(const Particle& p, std::size_t i, double xi) {
 
 double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, double xi, std::span<const double> y,
                    const Motion& now) {
-  const std::size_t i = guard.place();
+  const std::size_t i = guard.list_index();
   switch (guard.kind) {
     case k_growth_on:
     case k_growth_off:

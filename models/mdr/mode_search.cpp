@@ -152,7 +152,7 @@ bool ModeSearch::separate_pulling_walls(double xi, std::span<double> y, std::vec
 bool ModeSearch::is_void(const Guard& guard, const Motion& now) const {
   // The guard of intersecting caps carries the number of their pair, not of a contact class.
   if (guard.kind == k_caps) return false;
-  const std::size_t i = guard.place();
+  const std::size_t i = guard.list_index();
   const ContactBranch& branch = p_.branch(i);
   const auto has_another_edge = [&] {
     // Another guard has changed this edge at this instant, or the contact is back on its primary branch.
@@ -187,7 +187,7 @@ bool ModeSearch::is_void(const Guard& guard, const Motion& now) const {
 /// Applies the transition of a guard that changes contacts, and logs it.
 /// @return whether the growth has to be decided anew
 bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const Motion& now, std::vector<Event>& log) {
-  const std::size_t i = guard.place();
+  const std::size_t i = guard.list_index();
   switch (guard.kind) {
     case k_yield:
       p_.set_branch(i, p_.branch(i).yielded(p_.law(), p_.at().r));
@@ -248,7 +248,7 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
 
 std::optional<DomainEnd> ModeSearch::end_of(const Guard& guard, ContactCaps& caps, std::vector<Event>& log) {
   const Event event{guard.name, guard.index};
-  const std::size_t i = guard.place();
+  const std::size_t i = guard.list_index();
   switch (guard.kind) {
     case k_softened:
       return DomainEnd{
@@ -272,7 +272,7 @@ std::optional<DomainEnd> ModeSearch::end_of(const Guard& guard, ContactCaps& cap
 /// True if the force of a contact that pulls passes through an extremum where the guard has fired. The guard also fires
 /// when a contact that has pressed begins to pull; its force then has a finite rate, and is at no extremum.
 bool ModeSearch::is_extremum(const Guard& guard, const Motion& now) const {
-  const std::size_t i = guard.place();
+  const std::size_t i = guard.list_index();
   const ContactBranch& branch = p_.branch(i);
   if (branch.edge.motion != edges_before_[i] || !branch.touches() || !(p_.contact(i).contact.force < 0.0)) return false;
   return guard.kind == k_greatest_tension ||

@@ -41,18 +41,23 @@ Setup::Setup(const Settings& given, std::vector<ContactClass> contact_classes)
 std::vector<Unknown> Setup::unknowns() const {
   const double reach = largest_overlap_expected();
   std::vector<Unknown> list{
-      {"apparent radius growth (R - R0)/R0", Unknown::Kind::differential, growth_scale(reach), true},
-      {"work", Unknown::Kind::quadrature, work_scale(reach), false}};
+      {.name = "apparent radius growth (R - R0)/R0", .scale = growth_scale(reach), .is_algebraic_in_residual = true},
+      {.name = "work", .kind = Unknown::Kind::quadrature, .scale = work_scale(reach)}};
   for (int k = 0; k < centre.count(); ++k) {
     list.push_back({.name = contacts::k_centre_unknowns[static_cast<std::size_t>(k)],
                     .kind = Unknown::Kind::algebraic,
                     .scale = reach,
-                    .is_implicitly_algebraic = true,
+                    .is_algebraic_in_residual = true,
                     .is_dependent = true,
                     .may_be_undetermined = true});
   }
   for (const ContactClass& c : classes) {
-    if (c.takes_force) list.push_back({c.name, Unknown::Kind::algebraic, reach, true, true});
+    if (!c.takes_force) continue;
+    list.push_back({.name = c.name,
+                    .kind = Unknown::Kind::algebraic,
+                    .scale = reach,
+                    .is_algebraic_in_residual = true,
+                    .is_dependent = true});
   }
   return list;
 }

@@ -12,7 +12,7 @@ namespace monograin::nonlocal {
 namespace {
 
 // Distance of two positions that count as one, over the length of the path; shortest step.
-constexpr double k_same_place = 1e-13;
+constexpr double k_same_position = 1e-13;
 constexpr double k_shortest = 1e-11;
 constexpr double k_early = 1e-9;  // of a step: near its start, which walls touch is read here
 // Shares of a step before its end at which touching walls are read, too. Too far from the end, a wall that has only
@@ -129,13 +129,13 @@ bool CentreSearch::try_step(Contacts& contacts, double done, double next, double
     }
     return true;
   };
-  const auto lead_to_one_place = [&] {
-    return (contacts.centre_of(at_once_) - contacts.centre_of(by_halves_)).norm() <= k_same_place * size;
+  const auto lead_to_one_position = [&] {
+    return (contacts.centre_of(at_once_) - contacts.centre_of(by_halves_)).norm() <= k_same_position * size;
   };
   // The test that rejects a step soonest comes first, because most steps are too long.
   const auto goes_on = [may_be_cut](bool is_same) { return is_same || !may_be_cut; };
   return reach(next, at_once_) && reach(std::lerp(done, next, k_early), early_) && goes_on(touch_the_same(early_)) &&
-         reach(std::midpoint(done, next), by_halves_) && reach(next, by_halves_) && goes_on(lead_to_one_place()) &&
+         reach(std::midpoint(done, next), by_halves_) && reach(next, by_halves_) && goes_on(lead_to_one_position()) &&
          std::ranges::all_of(k_late, [&](double late) { return reach(std::lerp(done, next, 1.0 - late), late_); }) &&
          reach(next, late_) && goes_on(touch_the_same(late_));
 }

@@ -149,26 +149,26 @@ bool EquilibriumSearch::descend_to_balance(Contacts& contacts, std::span<double>
   for (std::size_t j = 0; j < targets_.size(); ++j) {
     size = std::max({size, std::abs(y[j]), targets_[j].is_force ? 0.0 : std::abs(targets_[j].value)});
   }
-  const auto net_at = [&](const Eigen::Vector3d& place) -> std::optional<Eigen::Vector3d> {
+  const auto net_at = [&](const Eigen::Vector3d& position) -> std::optional<Eigen::Vector3d> {
     std::ranges::copy(state_, trial_.begin());
-    contacts.set_centre(place, trial_);
+    contacts.set_centre(position, trial_);
     if (!newton_.solve(contacts, {.targets = targets_, .holds_centre = true}, trial_)) return std::nullopt;
     return newton_.net_force(contacts);
   };
-  Eigen::Vector3d place = contacts.centre_of(state_);
-  auto net = net_at(place);
+  Eigen::Vector3d position = contacts.centre_of(state_);
+  auto net = net_at(position);
   for (int step = 0; net && step < k_most_descent_steps; ++step) {
     Eigen::Vector3d move = newton_.step_to_balance(contacts, *net);
     if (move.norm() <= k_round_off * size) break;
     move *= std::min(1.0, size / move.norm());
     const double power = move.dot(*net);
     // A step is halved if there is no state at its end, or if it goes too far past the balance.
-    auto next = net_at(place + move);
+    auto next = net_at(position + move);
     for (; !(next && move.dot(*next) <= -k_past_balance * power) && move.norm() > k_round_off * size;
-         next = net_at(place + move)) {
+         next = net_at(position + move)) {
       move *= 0.5;
     }
-    place += move;
+    position += move;
     net = next;
     std::ranges::copy(trial_, state_.begin());
   }

@@ -11,16 +11,15 @@ constexpr double k_no_approach = 1e-30;  // over R0; less is round-off of zero
 
 }  // namespace
 
-double free_approach(const contacts::Obstacle& wall, const Eigen::Vector3d& centre, double round_off) {
+double free_approach(const contacts::Obstacle& wall, const Eigen::Vector3d& centre) {
   const double sum = wall.overlap(centre);
-  const double size = std::abs(wall.displacement) + wall.arm.norm() * centre.norm();
-  return std::abs(sum) <= std::max(round_off * size, k_no_approach) ? 0.0 : sum;
+  const double size = std::abs(wall.overlap_at_origin) + wall.arm.norm() * centre.norm();
+  return std::abs(sum) <= std::max(k_round_off * size, k_no_approach) ? 0.0 : sum;
 }
 
-bool clear_walls(std::span<const contacts::Obstacle> walls, const Eigen::Matrix3d& projector, Eigen::Vector3d& centre,
-                 double round_off) {
-  const auto overlaps = [round_off](const contacts::Obstacle& wall, const Eigen::Vector3d& at) {
-    return !(free_approach(wall, at, round_off) <= 0.0);
+bool clear_walls(std::span<const contacts::Obstacle> walls, const Eigen::Matrix3d& projector, Eigen::Vector3d& centre) {
+  const auto overlaps = [](const contacts::Obstacle& wall, const Eigen::Vector3d& at) {
+    return !(free_approach(wall, at) <= 0.0);
   };
   return contacts::clear(walls, projector, k_same_direction, overlaps, centre);
 }

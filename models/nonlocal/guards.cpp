@@ -31,11 +31,11 @@ std::vector<double> meeting_angles(const ContactClass& first, const ContactClass
 double limit_value(Particle& p, const Guard& guard, double xi) {
   const Scales& scales = p.scales();
   if (guard.kind == k_radius) {
-    const ContactState& contact = p.contact(guard.place());
+    const ContactState& contact = p.contact(guard.list_index());
     return scales.greatest_approach ? 1.0 - contact.approach / *scales.greatest_approach
                                     : scales.widest - contact.contact_radius;
   }
-  if (guard.kind == k_centre) return 1.0 - p.depth(guard.place(), xi);
+  if (guard.kind == k_centre) return 1.0 - p.depth(guard.list_index(), xi);
   // Vanishes where the margin is k_margin_of_fold, in whatever order the walls are eliminated.
   return p.contacts().least_pivot(p.state(), k_margin_of_fold);
 }
@@ -151,7 +151,7 @@ void GuardSet::values(Particle& p, double xi, std::span<const double> y, std::sp
   std::ranges::fill(edge_angles_, k_nan);
   const Scales& scales = p.scales();
   for (std::size_t g = 0; g < list_.size(); ++g) {
-    const std::size_t index = list_[g].place();
+    const std::size_t index = list_[g].list_index();
     switch (list_[g].kind) {
       case k_made:
         values[g] = (p.state()[index] - scales.touch) / scales.guard_unit;

@@ -22,7 +22,7 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   const double margin = p.contacts().margin(p.state());
   now_.least_margin = std::min(now_.least_margin, margin);
   auto out = values.begin();
-  *out++ = y[p.work_place()] * energy_unit;
+  *out++ = y[p.work_slot()] * energy_unit;
   *out++ = p.contacts().energy(p.state()) * energy_unit;
   *out++ = margin;
   for (std::size_t i = 0; i < classes_.size(); ++i) {

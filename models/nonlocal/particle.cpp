@@ -173,7 +173,7 @@ double Particle::leave_singularity(double xi, std::span<double> y) {
     return xi;  // the next evaluation from here throws again
   }
   note(y);
-  y[work_place()] += contacts_.energy(state_) - energy;
+  y[work_slot()] += contacts_.energy(state_) - energy;
   return later;
 }
 
@@ -211,7 +211,7 @@ void Particle::rates(double xi, std::span<const double> y, std::span<double> dy)
     const double speed = is_force_controlled(i) ? speed_under_force(i) : ramps_[i].rate();
     power += contacts_.weight(i) * now_[i].force * speed;
   }
-  dy[work_place()] = power;
+  dy[work_slot()] = power;
 }
 
 void Particle::residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) {
@@ -221,7 +221,7 @@ void Particle::residual(double xi, std::span<const double> y, std::span<const do
     if (is_force_controlled(i)) res[i] = y[i] - std::pow(state_[i], k_force_power);
   }
   rates(xi, y, all_rates_);
-  res[work_place()] = dy[work_place()] - all_rates_[work_place()];
+  res[work_slot()] = dy[work_slot()] - all_rates_[work_slot()];
   // The balance of forces does not determine the position of a centre that no contact supports.
   const std::size_t count = contacts_.free_count();
   if (count == 0) return;

@@ -42,7 +42,7 @@ class Particle {
   [[nodiscard]] std::size_t size() const noexcept { return ramps_.size(); }
   [[nodiscard]] bool has_free_centre() const noexcept { return contacts_.free_count() > 0; }
   /// Index of the work among the unknowns.
-  [[nodiscard]] std::size_t work_place() const noexcept { return contacts_.unknown_count(); }
+  [[nodiscard]] std::size_t work_slot() const noexcept { return contacts_.unknown_count(); }
 
   Mode mode{};
 

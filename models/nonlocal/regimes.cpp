@@ -59,7 +59,7 @@ void mark_touching(Particle& p) {
 
 bool apply_to_contact(Particle& p, const Guard& guard, std::span<const Guard> fired, double xi,
                       std::span<const double> y) {
-  const std::size_t i = guard.place();
+  const std::size_t i = guard.list_index();
   // A wall whose touch guard fires now carries no load yet; it may only move a free centre.
   const auto touches_now = [&](const Guard& other) { return other.kind == k_touched && other.index == guard.index; };
   switch (guard.kind) {

@@ -65,7 +65,7 @@ std::vector<Unknown> unknowns_of(std::span<const ContactClass> classes, const Co
     unknowns.push_back({.name = contacts::k_centre_unknowns[k],
                         .kind = Unknown::Kind::differential,
                         .scale = depth,
-                        .is_implicitly_algebraic = true,
+                        .is_algebraic_in_residual = true,
                         .may_be_undetermined = true});
   }
   unknowns.push_back({"work", Unknown::Kind::quadrature, depth * depth * std::sqrt(depth), false});

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "contacts/centre/reaction_cone.hpp"
-#include "nonlocal/evasion.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
@@ -12,6 +11,8 @@ namespace {
 
 constexpr double k_small_force = 1e-3;  // prescribed forces below this, over the largest, are balanced by themselves
 constexpr double k_little = 1e-3;       // of the rest of a step: how far ahead forces are evaluated
+
+bool pushes_centre(const Contacts& contacts, std::size_t j) { return contacts.arm(j).norm() > k_same_direction; }
 
 }  // namespace
 
@@ -27,7 +28,7 @@ bool may_balance(const Contacts& contacts, std::span<const Target> targets, std:
   std::vector<Eigen::Vector3d> unloading;
   for (std::size_t j = 0; j < targets.size(); ++j) {
     const Eigen::Vector3d& arm = contacts.arm(j);
-    if (targets[j].is_force || y[j] < -near || !(arm.norm() > k_same_direction)) continue;
+    if (targets[j].is_force || y[j] < -near || !pushes_centre(contacts, j)) continue;
     others.push_back(arm.normalized());
     if (y[j] > 0.0) unloading.push_back(-others.back());
   }
@@ -67,17 +68,14 @@ bool is_held_softly(const Contacts& contacts, std::span<const Ramp> ramps, std::
 
 void CentreSupport::find_redundant(const Contacts& contacts) {
   if (std::ranges::all_of(walls_, [](const Wall& wall) { return wall.may_bear == wall.did_bear; })) return;
-  obstacles_.clear();
+  std::vector<Eigen::Vector3d> normals;
   for (std::size_t j = 0; j < walls_.size(); ++j) {
     walls_[j].did_bear = walls_[j].may_bear;
-    walls_[j].is_redundant = false;
-    if (walls_[j].may_bear && contacts.free_count() > 0) obstacles_.push_back({j, contacts.arm(j), 0.0});
+    if (walls_[j].may_bear && pushes_centre(contacts, j)) normals.push_back(contacts.arm(j).normalized());
   }
-  for (contacts::Obstacle& wall : obstacles_) {
-    wall.displacement = 1.0;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    walls_[wall.index].is_redundant = clear_walls(obstacles_, Eigen::Matrix3d::Identity(), centre, k_same_direction);
-    wall.displacement = 0.0;
+  for (std::size_t j = 0; j < walls_.size(); ++j) {
+    walls_[j].is_redundant =
+        walls_[j].may_bear && pushes_centre(contacts, j) && !in_reaction_cone(contacts.arm(j), normals);
   }
 }
 

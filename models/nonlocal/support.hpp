@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "contacts/centre/obstacles.hpp"
 #include "nonlocal/contacts.hpp"
 #include "nonlocal/equations.hpp"
 #include "system/resolution.hpp"
@@ -28,9 +27,7 @@ namespace monograin::nonlocal {
 /// leave it without approaching another one. A wall under force control never supports the centre.
 class CentreSupport {
  public:
-  explicit CentreSupport(const Contacts& contacts) : walls_(contacts.class_count()) {
-    obstacles_.reserve(walls_.size());
-  }
+  explicit CentreSupport(const Contacts& contacts) : walls_(contacts.class_count()) {}
 
   /// @param may_bear  class -> whether it may bear
   /// @param is_force  class -> whether it is under force control
@@ -70,7 +67,6 @@ class CentreSupport {
   void find_redundant(const Contacts& contacts);
 
   std::vector<Wall> walls_;
-  std::vector<contacts::Obstacle> obstacles_;  ///< work space of find_redundant()
 };
 
 }  // namespace monograin::nonlocal

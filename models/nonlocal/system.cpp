@@ -57,7 +57,7 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> indices, doub
     Event event{guard.name, guard.index};
     switch (guard.kind) {
       case k_impingement: {
-        const Pair& pair = now_.guards.impinge(guard.place());
+        const Pair& pair = now_.guards.impinge(guard.list_index());
         event = {guard.name, static_cast<int>(pair.first),
                  pair.first == pair.second ? -1 : static_cast<int>(pair.second)};
         break;

@@ -14,11 +14,11 @@ constexpr double k_noise = 1e-11;      // smaller steps may be round-off
 
 }  // namespace
 
-double Equations::strain(const IntegratedState& y) const noexcept {
+double IntegratedEquations::strain(const IntegratedState& y) const noexcept {
   return total_strain(law_, y.packing_fraction) - law_.sign * y.particle_strain;
 }
 
-double Equations::excess(const IntegratedState& y) const {
+double IntegratedEquations::excess(const IntegratedState& y) const {
   const double phi = y.packing_fraction;
   if (branch_.control() == Control::packing_fraction) return phi - value_;
   if (branch_.control() == Control::strain) return strain(y) - value_;
@@ -26,7 +26,7 @@ double Equations::excess(const IntegratedState& y) const {
   return (stress - std::min(value_, branch_.range().greatest)) / law_.given.youngs_modulus;
 }
 
-std::array<double, 2> Equations::excess_slopes(const IntegratedState& y) const {
+std::array<double, 2> IntegratedEquations::excess_slopes(const IntegratedState& y) const {
   const double phi = y.packing_fraction;
   const double scale = law_.sign * particle_scale_;
   if (branch_.control() == Control::packing_fraction) return {0.0, 1.0};
@@ -36,13 +36,13 @@ std::array<double, 2> Equations::excess_slopes(const IntegratedState& y) const {
   return {-scale * by_strain / law_.given.youngs_modulus, by_fraction / law_.given.youngs_modulus};
 }
 
-IntegratedState Equations::within_branch(const IntegratedState& y) const noexcept {
+IntegratedState IntegratedEquations::within_branch(const IntegratedState& y) const noexcept {
   const double least =
       std::max(branch_.least_integrated(), std::midpoint(branch_.range().begin, branch_.end_of_start()));
   return {y.particle_strain, std::max(y.packing_fraction, least)};
 }
 
-IntegratedState Equations::rates(const IntegratedState& y, double rate) const {
+IntegratedState IntegratedEquations::rates(const IntegratedState& y, double rate) const {
   const double phi = y.packing_fraction;
   const Slopes s = slopes(law_, phi, strain(y), piece_);
   const double growth = branch_.growth(s);
@@ -51,7 +51,7 @@ IntegratedState Equations::rates(const IntegratedState& y, double rate) const {
   return {s.particle_strain * fraction_rate, fraction_rate};
 }
 
-IntegratedState Equations::completed(const IntegratedState& guess) const {
+IntegratedState IntegratedEquations::completed(const IntegratedState& guess) const {
   branch_.require_state(value_);
   if (branch_.control() == Control::packing_fraction) return {guess.particle_strain, value_};
   const double least = branch_.least_integrated();
@@ -73,7 +73,7 @@ IntegratedState Equations::completed(const IntegratedState& guess) const {
 }
 
 /// Newton's method along the gradient of excess(). None if it does not converge.
-std::optional<IntegratedState> Equations::nearest(IntegratedState y) const {
+std::optional<IntegratedState> IntegratedEquations::nearest(IntegratedState y) const {
   double last = 1.0;
   for (int k = 0; k < k_iterations; ++k) {
     // Next to jamming, and to a full packing of nearly incompressible particles, a tolerated state may lie outside.

@@ -14,12 +14,12 @@ struct IntegratedState {
   double packing_fraction = 0.0;
 };
 
-class Equations {
+class IntegratedEquations {
  public:
   /// @param piece           of eq. 11
   /// @param particle_scale  typical strain of the particles
   /// @param value           prescribed value
-  Equations(const ControlledBranch& branch, Piece piece, double particle_scale, double value)
+  IntegratedEquations(const ControlledBranch& branch, Piece piece, double particle_scale, double value)
       : branch_(branch), law_(branch.law()), piece_(piece), particle_scale_(particle_scale), value_(value) {}
 
   /// Strain of the packing: the total strain without the particles' share.

@@ -256,21 +256,21 @@ double measured(const Law& law, Measure measure, double phi) {
 }
 
 Branch growing_branch(const Law& law, Measure measure) {
-  std::array<double, k_ratios + k_steps + 2> places{};
+  std::array<double, k_ratios + k_steps + 2> fractions{};
   const double room = 1.0 - law.jamming;
   // The ratios end where the equal steps begin.
   for (int k = 0; k <= k_ratios; ++k) {
-    places[static_cast<std::size_t>(k)] =
+    fractions[static_cast<std::size_t>(k)] =
         law.jamming + room * std::pow(k_first, 1.0 - static_cast<double>(k) / k_ratios) /
                           std::pow(static_cast<double>(k_steps), static_cast<double>(k) / k_ratios);
   }
   for (int k = 1; k <= k_steps; ++k) {
-    places[static_cast<std::size_t>(k_ratios + k)] = std::lerp(law.jamming, 1.0, static_cast<double>(k) / k_steps);
+    fractions[static_cast<std::size_t>(k_ratios + k)] = std::lerp(law.jamming, 1.0, static_cast<double>(k) / k_steps);
   }
   // As the particles yield, the stress falls fastest just before all of them have yielded, and grows again at once.
   const double yielding = full_plasticity(law) * (1.0 - k_before_full_plasticity);
-  places.back() = std::clamp(yielding, places.front(), 1.0);
-  std::ranges::sort(places);
+  fractions.back() = std::clamp(yielding, fractions.front(), 1.0);
+  std::ranges::sort(fractions);
   const auto slope = [&](double phi) {
     try {
       return slope_of(law, measure, phi);
@@ -279,17 +279,17 @@ Branch growing_branch(const Law& law, Measure measure) {
     }
   };
   Branch branch{.measure = measure, .begin = law.jamming};
-  double before = places.front();
+  double before = fractions.front();
   bool grows = slope(before) > 0.0;
   bool has_grown = grows;
-  for (const double place : places) {
-    if (!(place > before) || (slope(place) > 0.0) == grows) {
-      before = std::max(before, place);
+  for (const double fraction : fractions) {
+    if (!(fraction > before) || (slope(fraction) > 0.0) == grows) {
+      before = std::max(before, fraction);
       continue;
     }
     // Bisection, because the slope may have a jump, and has no value where the equations end.
     double lower = before;
-    double upper = place;
+    double upper = fraction;
     while (std::midpoint(lower, upper) > lower && std::midpoint(lower, upper) < upper) {
       const double middle = std::midpoint(lower, upper);
       ((slope(middle) > 0.0) == grows ? lower : upper) = middle;
@@ -300,7 +300,7 @@ Branch growing_branch(const Law& law, Measure measure) {
     }
     branch.begin = upper;
     has_grown = grows = true;
-    before = place;
+    before = fraction;
   }
   if (!has_grown) branch.end = branch.begin;
   branch.least = measured(law, measure, branch.begin);

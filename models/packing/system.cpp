@@ -113,7 +113,7 @@ void System::resolve_mode(std::vector<Event>& log) {
 
 PackingState System::by_law(double xi) const { return closed_form(branch_, mode_, ramp_.value(xi), at_rest_); }
 
-Equations System::equations(double xi) const {
+IntegratedEquations System::equations(double xi) const {
   return {branch_, piece_, unknowns_[k_particles].scale, ramp_.value(xi)};
 }
 
@@ -147,7 +147,7 @@ void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   dy[k_particles] = dy[k_fraction] = 0.0;
   if (mode_ != Mode::jammed || ramp_.direction() == 0) return;
   branch_.require_state(ramp_.value(xi));
-  const Equations now = equations(xi);
+  const IntegratedEquations now = equations(xi);
   store(now.rates(now.within_branch(state_of(y)), ramp_.rate()), dy);
 }
 
@@ -157,7 +157,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
     res[k_fraction] = y[k_fraction] - resting_;
     return;
   }
-  const Equations now = equations(xi);
+  const IntegratedEquations now = equations(xi);
   const IntegratedState inside = now.within_branch(state_of(y));
   std::array<double, 2> all{};
   rates(xi, std::array{inside.particle_strain, inside.packing_fraction}, all);

@@ -59,7 +59,7 @@ class System final : public HybridSystem {
   [[nodiscard]] bool is_jammed() const noexcept { return mode_ != Mode::unjammed; }
   [[nodiscard]] PackingState by_law(double xi) const;
   [[nodiscard]] PackingState seen(double xi, std::span<const double> y) const;
-  [[nodiscard]] Equations equations(double xi) const;
+  [[nodiscard]] IntegratedEquations equations(double xi) const;
   [[nodiscard]] bool is_at_limit(double xi) const noexcept;
   [[nodiscard]] Regime regime() const noexcept;
   void require_pores(std::span<const double> y) const;

@@ -61,6 +61,7 @@ struct Ramp {
   double end = 0.0;
   Control control = Control::displacement;
 
+  [[nodiscard]] bool operator==(const Ramp&) const = default;
   [[nodiscard]] bool is_force_controlled() const noexcept { return control == Control::force; }
   /// Value at a step coordinate; exact at both ends, and to the last digit next to zero.
   [[nodiscard]] double value(double xi) const noexcept { return std::lerp(start, end, xi); }

@@ -22,7 +22,7 @@ class WrappedSystem : public HybridSystem {
   explicit WrappedSystem(std::unique_ptr<HybridSystem> system) : system_(std::move(system)) {}
 
   void leave_out_energies() noexcept override {
-    HybridSystem::leave_out_energies();
+    Equations::leave_out_energies();
     system_->leave_out_energies();
   }
   [[nodiscard]] std::span<const Unknown> unknowns() const noexcept override { return system_->unknowns(); }

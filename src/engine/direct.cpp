@@ -32,7 +32,7 @@ constexpr std::size_t k_many_rows = 50;
 
 class Direct final : public EventLocator {
  public:
-  Direct(HybridSystem& system, double rtol, GuardSet& guard_set, std::size_t rows)
+  Direct(Equations& system, double rtol, GuardSet& guard_set, std::size_t rows)
       : EventLocator(system, guard_set, k_most_nodes),
         has_many_rows_(rows >= k_many_rows),
         work_accuracy_(work_accuracy_of(rtol)) {
@@ -491,13 +491,13 @@ class Direct final : public EventLocator {
   std::vector<LegendreSeries> series_;   ///< series of the gains
   std::vector<double> trial_, rates_, begin_rates_;
   bool has_branches_ = false;             ///< the equations have several branches of solutions
-  std::vector<double> branch_reach_;      ///< HybridSystem::branch_reach() where the piece begins
+  std::vector<double> branch_reach_;      ///< Equations::branch_reach() where the piece begins
   const LegendreNodes* nodes_ = nullptr;  ///< rule for all pieces of the segment
 };
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, GuardSet& guard_set, std::size_t rows) {
+std::unique_ptr<Integrator> make_direct(Equations& system, double rtol, GuardSet& guard_set, std::size_t rows) {
   return std::make_unique<Direct>(system, rtol, guard_set, rows);
 }
 

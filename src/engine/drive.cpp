@@ -360,14 +360,14 @@ class Drive {
   /// Applies the transitions of the guards that fire at xi_. Returns whether a condition of the program ends the step.
   /// @param last  step coordinate where the integrator's last step began
   bool handle_event(double last) {
-    const std::vector<std::size_t> fired = fired_guards(system_, guard_set_, *integrator_, last, xi_, y_);
+    const std::vector<std::size_t> fired = fired_guards(guard_set_, *integrator_, last, xi_, y_);
     follow([&](ForwardSensitivities& s) { s.locate(fired, xi_, y_); });
     std::vector<std::size_t> of_system;
     for (const std::size_t guard : fired) {
       if (guard < guard_set_.system_guards()) of_system.push_back(guard);
     }
     bool is_met = of_system.size() < fired.size();
-    if (are_marks(system_, guard_set_, of_system)) {
+    if (are_marks(guard_set_, of_system)) {
       std::vector<Event> log;
       static_cast<void>(system_.fire(of_system, xi_, y_, log));
       follow([&](ForwardSensitivities& s) { s.pass_mark(of_system, xi_, log); });

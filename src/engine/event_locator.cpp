@@ -24,7 +24,7 @@ constexpr double k_share_of_progress = 1e-2;  // width of the bracket of a root,
 
 }  // namespace
 
-EventLocator::EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t samples)
+EventLocator::EventLocator(Equations& system, GuardSet& guard_set, std::size_t samples)
     : system_(system), guard_set_(guard_set), most_samples_(samples + k_evaluations_before_end) {
   for (auto* state : {&begin_state_, &end_state_, &guess_}) state->resize(system.unknowns().size());
 }
@@ -177,7 +177,7 @@ void EventLocator::locate_event() {
     const bool is_shorter = root < end_ - least_progress(begin_);
     place = shorten(root, place);
     const double last_sample = sample(place).xi;
-    if (is_branch_end(first) && !of_branch) {
+    if (guard_set_.is_branch_end(first) && !of_branch) {
       of_branch = {root, first};
       sample_up_to(last_sample);
       continue;
@@ -217,10 +217,6 @@ std::size_t EventLocator::shorten(double xi, std::size_t samples) {
   if (xi < end_) move_end(xi);
   while (!samples_.empty() && samples_.back() >= end_) samples_.pop_back();
   return samples_.size();
-}
-
-bool EventLocator::is_branch_end(std::size_t guard) const {
-  return guard < guard_set_.system_guards() && system_.guards()[guard].is_branch_end;
 }
 
 /// Evaluates the guards between xi = last and the end that a root has given the piece, ever nearer to the end.

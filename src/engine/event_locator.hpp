@@ -21,7 +21,7 @@ class EventLocator : public Integrator {
 
  protected:
   /// @param samples  expected evaluations of the guards inside a piece; memory for them is reserved
-  EventLocator(HybridSystem& system, GuardSet& guard_set, std::size_t samples = 0);
+  EventLocator(Equations& system, GuardSet& guard_set, std::size_t samples = 0);
 
   /// Pieces shorter than this (step coordinates) have no evaluations inside, and are not searched for two crossings:
   /// guards near zero are round-off there.
@@ -40,7 +40,7 @@ class EventLocator : public Integrator {
   /// Evaluates the guards at (xi, y), and counts the evaluation.
   void evaluate_guards(double xi, std::span<const double> y, std::span<double> values);
 
-  HybridSystem& system_;
+  Equations& system_;
   GuardSet& guard_set_;
   double begin_ = 0.0;  ///< where the present piece begins; end_: where it ends (step coordinates)
   double end_ = 0.0;
@@ -78,7 +78,6 @@ class EventLocator : public Integrator {
   [[nodiscard]] double first_root(const View& before, const View& after, std::size_t& guard);
   [[nodiscard]] bool collect_fired(std::size_t first, const View& last, bool is_shorter);
   [[nodiscard]] std::size_t shorten(double xi, std::size_t samples);
-  [[nodiscard]] bool is_branch_end(std::size_t guard) const;
   void sample_up_to(double last);
   [[nodiscard]] double polish(std::size_t guard, const View& before, const View& after);
 

@@ -92,7 +92,7 @@ class SegmentQuadratures {
 /// Completes integrated states and gives their rates; keeps the last complete state as the first guess of the next one.
 class ExplicitForm {
  public:
-  explicit ExplicitForm(HybridSystem& system)
+  explicit ExplicitForm(Equations& system)
       : system_(system),
         quadratures_(system.unknowns()),
         complete_(system.unknowns().size()),
@@ -156,7 +156,7 @@ class ExplicitForm {
   }
 
  private:
-  HybridSystem& system_;
+  Equations& system_;
   SegmentQuadratures quadratures_;
   std::vector<double> complete_, trial_;
   std::size_t size_ = 0;

@@ -43,21 +43,22 @@ class GuardsBefore {
 
 }  // namespace
 
-bool are_marks(const HybridSystem& system, const GuardSet& guard_set, std::span<const std::size_t> guards) {
+bool are_marks(const GuardSet& guard_set, std::span<const std::size_t> guards) {
   return !guards.empty() && std::ranges::all_of(guards, [&](std::size_t guard) {
-    return guard < guard_set.system_guards() && system.guards()[guard].is_mark;
+    const Guard* const of_system = guard_set.of_system(guard);
+    return of_system != nullptr && of_system->is_mark;
   });
 }
 
-std::vector<std::size_t> fired_guards(const HybridSystem& system, GuardSet& guard_set, Integrator& integrator,
-                                      double last, double xi, std::span<const double> y) {
+std::vector<std::size_t> fired_guards(GuardSet& guard_set, Integrator& integrator, double last, double xi,
+                                      std::span<const double> y) {
   std::vector<std::size_t> fired(integrator.fired().begin(), integrator.fired().end());
-  if (are_marks(system, guard_set, fired)) return fired;
+  if (are_marks(guard_set, fired)) return fired;
   std::vector<double> now(guard_set.size());
   guard_set.values(xi, y, now);
-  const auto is_of_system = [&](std::size_t g) { return g < guard_set.system_guards(); };
   const auto tolerance_of = [&](std::size_t g) {
-    return is_of_system(g) && system.guards()[g].is_exact ? k_zero_guard : integrator.guard_tolerance();
+    const Guard* const of_system = guard_set.of_system(g);
+    return of_system != nullptr && of_system->is_exact ? k_zero_guard : integrator.guard_tolerance();
   };
   const auto may_be_met = [&](std::size_t g) {
     const int direction = guard_set.directions()[g];
@@ -79,7 +80,8 @@ std::vector<std::size_t> fired_guards(const HybridSystem& system, GuardSet& guar
       const double path = side * (now[g] - before[g]);
       const bool has_arrived = path > 0.0 && -side * now[g] <= std::min(tolerance_of(g), std::max(k_zero_guard, path));
       if (!counts || before[g] == 0.0 || !has_arrived) continue;
-      if (is_of_system(g) || -side * now[g] <= 0.0 || !goes_away(guards, g, now[g], middle, xi)) fired.push_back(g);
+      if (guard_set.of_system(g) != nullptr || -side * now[g] <= 0.0 || !goes_away(guards, g, now[g], middle, xi))
+        fired.push_back(g);
     }
   }
   std::ranges::sort(fired);

@@ -87,11 +87,11 @@ bool GuardSet::vanishes_with_contact(const Condition& condition) const {
 }
 
 std::string GuardSet::name(std::size_t guard) const {
-  if (guard >= system_count_) return "until";
-  const Guard& of_system = system_.guards()[guard];
-  std::string result(of_system.name);
-  if (of_system.index >= 0 && static_cast<std::size_t>(of_system.index) < system_.classes().size()) {
-    result += " of " + system_.classes()[static_cast<std::size_t>(of_system.index)].name;
+  const Guard* const at = of_system(guard);
+  if (at == nullptr) return "until";
+  std::string result(at->name);
+  if (at->index >= 0 && static_cast<std::size_t>(at->index) < system_.classes().size()) {
+    result += " of " + system_.classes()[static_cast<std::size_t>(at->index)].name;
   }
   return result;
 }

@@ -63,6 +63,14 @@ class GuardSet {
   /// Values of all guards alive.
   void values(double xi, std::span<const double> y, std::span<double> out);
 
+  /// The guard of the system at an index; null for a condition of the program.
+  [[nodiscard]] const Guard* of_system(std::size_t guard) const noexcept {
+    return guard < system_count_ ? &system_.guards()[guard] : nullptr;
+  }
+  /// True if the guard ends a branch of solutions.
+  [[nodiscard]] bool is_branch_end(std::size_t guard) const noexcept {
+    return guard < system_count_ && of_system(guard)->is_branch_end;
+  }
   /// Number of guards of the system; they come before the conditions of the program.
   [[nodiscard]] std::size_t system_guards() const noexcept { return system_count_; }
 

@@ -39,7 +39,7 @@ constexpr int k_most_failing_steps = 10;
 
 class Ida final : public Integrator {
  public:
-  Ida(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances, ForwardSensitivities* sensitivities)
+  Ida(Equations& system, GuardSet& guard_set, const Tolerances& tolerances, ForwardSensitivities* sensitivities)
       : system_(system), guard_set_(guard_set), tolerances_(tolerances), quadratures_(system.unknowns()) {
     const auto unknowns = system.unknowns();
     const auto size = static_cast<sunindextype>(unknowns.size());
@@ -53,7 +53,7 @@ class Ida final : public Integrator {
       // A dependent unknown has no error of its own: it has little weight, and is completed wherever it is used.
       const double absolute = unknowns[k].is_dependent ? k_dependent_tolerance : of_step(tolerances).atol;
       view(least_atol_.get())[k] = std::max(absolute * unknowns[k].scale, k_above_round_off * unknowns[k].sum_scale);
-      view(id_.get())[k] = unknowns[k].is_implicitly_algebraic ? 0.0 : 1.0;
+      view(id_.get())[k] = unknowns[k].is_algebraic_in_residual ? 0.0 : 1.0;
     }
     if (sensitivities != nullptr) {
       carried_.emplace(*sensitivities, of_step(tolerances).rtol, least_atol_.get(), false, context_);
@@ -259,7 +259,7 @@ class Ida final : public Integrator {
       dense_output(xi, complete_);
       guard_set_.values(xi, complete_, values);
     };
-    end_ = root_of_step(system_, guard_set_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
+    end_ = root_of_step(guard_set_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
   }
 
   int evolve() {
@@ -380,7 +380,7 @@ class Ida final : public Integrator {
     return {why, end_, step, details, library};
   }
 
-  HybridSystem& system_;
+  Equations& system_;
   GuardSet& guard_set_;
   Tolerances tolerances_;
   SegmentQuadratures quadratures_;
@@ -406,7 +406,7 @@ class Ida final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_ida(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances,
+std::unique_ptr<Integrator> make_ida(Equations& system, GuardSet& guard_set, const Tolerances& tolerances,
                                      ForwardSensitivities* sensitivities) {
   return std::make_unique<Ida>(system, guard_set, tolerances, sensitivities);
 }

@@ -102,7 +102,7 @@ bool suits_stiff_equations(std::string_view name) noexcept {
   return found == k_of_explicit_form.end() ? name != integrators::k_forward_euler : found->suits_stiff;
 }
 
-std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system, GuardSet& guard_set,
+std::unique_ptr<Integrator> make_integrator(std::string_view name, Equations& system, GuardSet& guard_set,
                                             const Tolerances& asked, std::size_t rows,
                                             ForwardSensitivities* sensitivities) {
   if (name == integrators::k_direct && !system.is_solvable()) throw std::logic_error("the system has no direct form");
@@ -128,7 +128,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem&
   throw std::logic_error(fmt::format("no integrator is called '{}'", name));
 }
 
-IntegratorChoice choose_integrator(const std::string& asked, const HybridSystem& system) {
+IntegratorChoice choose_integrator(const std::string& asked, const Equations& system) {
   if (asked != integrators::k_auto) return {asked, asked, "asked for"};
   if (system.is_solvable()) {
     return {asked, integrators::k_direct,

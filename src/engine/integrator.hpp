@@ -10,7 +10,7 @@
 
 #include "engine/guard_set.hpp"
 #include "scenario/integrators.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/equations.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -128,9 +128,8 @@ class Integrator {
 /// @param rows           approximate number of rows of the history in a step of the program
 /// @param sensitivities  derivatives to integrate too, if the integrator has_forward_sensitivities(); null: none
 /// @throws std::logic_error for another name, or for "direct" with a system that is not solvable
-[[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, HybridSystem& system,
-                                                          GuardSet& guard_set, const Tolerances& tolerances,
-                                                          std::size_t rows = 0,
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, Equations& system, GuardSet& guard_set,
+                                                          const Tolerances& tolerances, std::size_t rows = 0,
                                                           ForwardSensitivities* sensitivities = nullptr);
 
 /// Which integrator runs, and why.
@@ -144,32 +143,31 @@ struct IntegratorChoice {
 };
 
 /// Chooses the integrator asked for; for "auto", the direct form if the system is solvable, else switching methods.
-[[nodiscard]] IntegratorChoice choose_integrator(const std::string& asked, const HybridSystem& system);
+[[nodiscard]] IntegratorChoice choose_integrator(const std::string& asked, const Equations& system);
 
 /// Version of the SUNDIALS library in use.
 [[nodiscard]] std::string sundials_version();
 
 // One adapter per library.
-[[nodiscard]] std::unique_ptr<Integrator> make_direct(HybridSystem& system, double rtol, GuardSet& guard_set,
+[[nodiscard]] std::unique_ptr<Integrator> make_direct(Equations& system, double rtol, GuardSet& guard_set,
                                                       std::size_t rows);
 enum class OdeMethod { cvode_adams, cvode_bdf, arkode_erk, arkode_dirk };
-[[nodiscard]] std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, GuardSet& guard_set,
+[[nodiscard]] std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, Equations& system, GuardSet& guard_set,
                                                             const Tolerances& tolerances,
                                                             ForwardSensitivities* sensitivities = nullptr);
 enum class OdeintMethod { dopri5, fehlberg78, bulirsch_stoer, rosenbrock4 };
-[[nodiscard]] std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, GuardSet& guard_set,
+[[nodiscard]] std::unique_ptr<Integrator> make_stepped(OdeintMethod method, Equations& system, GuardSet& guard_set,
                                                        const Tolerances& tolerances);
 enum class GslMethod { rk8pd, msadams, msbdf };
-[[nodiscard]] std::unique_ptr<Integrator> make_stepped(GslMethod method, HybridSystem& system, GuardSet& guard_set,
+[[nodiscard]] std::unique_ptr<Integrator> make_stepped(GslMethod method, Equations& system, GuardSet& guard_set,
                                                        const Tolerances& tolerances);
 /// Forward Euler with 1/rtol steps in each step of the program, at most 1e7; transitions at the ends of steps.
-[[nodiscard]] std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, GuardSet& guard_set,
+[[nodiscard]] std::unique_ptr<Integrator> make_fixed_step(Equations& system, GuardSet& guard_set,
                                                           const Tolerances& tolerances);
 /// Odeint's dopri5, replaced by CVODE's BDF when dopri5 takes too many steps; "auto" integrates with this pair.
-[[nodiscard]] std::unique_ptr<Integrator> make_switching(HybridSystem& system, GuardSet& guard_set,
+[[nodiscard]] std::unique_ptr<Integrator> make_switching(Equations& system, GuardSet& guard_set,
                                                          const Tolerances& tolerances);
-[[nodiscard]] std::unique_ptr<Integrator> make_ida(HybridSystem& system, GuardSet& guard_set,
-                                                   const Tolerances& tolerances,
+[[nodiscard]] std::unique_ptr<Integrator> make_ida(Equations& system, GuardSet& guard_set, const Tolerances& tolerances,
                                                    ForwardSensitivities* sensitivities = nullptr);
 
 }  // namespace monograin

@@ -21,7 +21,7 @@ constexpr double k_at_end_of_piece = 1e-9;  // of a piece: a remainder as short 
 class Stepped final : public EventLocator {
  public:
   template <class Make>
-  Stepped(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances, Make&& make)
+  Stepped(Equations& system, GuardSet& guard_set, const Tolerances& tolerances, Make&& make)
       : EventLocator(system, guard_set),
         tolerances_(tolerances),
         form_(system),
@@ -144,7 +144,7 @@ constexpr double k_least_size = 1e-2;  // least size of an unknown, over its sca
 /// step that passes it.
 class FixedStep final : public Integrator {
  public:
-  FixedStep(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
+  FixedStep(Equations& system, GuardSet& guard_set, const Tolerances& tolerances)
       : guard_set_(guard_set),
         form_(system),
         complete_(system.unknowns().size()),
@@ -280,19 +280,19 @@ double DifferenceJacobian::sample_beside(double xi, std::size_t j, double wanted
   return step;
 }
 
-std::unique_ptr<Integrator> make_stepped(OdeintMethod method, HybridSystem& system, GuardSet& guard_set,
+std::unique_ptr<Integrator> make_stepped(OdeintMethod method, Equations& system, GuardSet& guard_set,
                                          const Tolerances& tolerances) {
   return std::make_unique<Stepped>(system, guard_set, tolerances,
                                    [&](ScaledForm& form) { return make_odeint(method, form, tolerances); });
 }
 
-std::unique_ptr<Integrator> make_stepped(GslMethod method, HybridSystem& system, GuardSet& guard_set,
+std::unique_ptr<Integrator> make_stepped(GslMethod method, Equations& system, GuardSet& guard_set,
                                          const Tolerances& tolerances) {
   return std::make_unique<Stepped>(system, guard_set, tolerances,
                                    [&](ScaledForm& form) { return make_gsl(method, form, tolerances); });
 }
 
-std::unique_ptr<Integrator> make_fixed_step(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances) {
+std::unique_ptr<Integrator> make_fixed_step(Equations& system, GuardSet& guard_set, const Tolerances& tolerances) {
   return std::make_unique<FixedStep>(system, guard_set, tolerances);
 }
 

@@ -15,7 +15,7 @@ inline constexpr double k_first_step = 1e-3;
 /// The explicit form with every unknown over its own scale, so that one absolute tolerance serves all unknowns.
 class ScaledForm {
  public:
-  explicit ScaledForm(HybridSystem& system)
+  explicit ScaledForm(Equations& system)
       : form_(system),
         y_(form_.size()),
         dy_(form_.size()),

@@ -25,14 +25,10 @@ struct Crossing {
 
 /// First crossing of a guard within a step that ends at the end of a branch, or none. The evaluations approach that
 /// end.
-std::optional<Crossing> crossing_before_branch_end(const HybridSystem& system, const GuardSet& guard_set,
-                                                   std::span<const std::size_t> fired, double begin, double end,
-                                                   double tolerance,
+std::optional<Crossing> crossing_before_branch_end(const GuardSet& guard_set, std::span<const std::size_t> fired,
+                                                   double begin, double end, double tolerance,
                                                    const std::function<void(double, std::span<double>)>& values_at) {
-  const auto ends_branch = [&](std::size_t g) {
-    return g < guard_set.system_guards() && system.guards()[g].is_branch_end;
-  };
-  if (std::ranges::none_of(fired, ends_branch)) return std::nullopt;
+  if (std::ranges::none_of(fired, [&](std::size_t g) { return guard_set.is_branch_end(g); })) return std::nullopt;
   const auto directions = guard_set.directions();
   std::vector<double> before(guard_set.size());
   std::vector<double> after(guard_set.size());
@@ -112,10 +108,9 @@ LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context)
   return solver;
 }
 
-double root_of_step(const HybridSystem& system, const GuardSet& guard_set, std::vector<std::size_t>& fired,
-                    double begin, double end, double tolerance,
-                    const std::function<void(double, std::span<double>)>& values_at) {
-  if (const auto hidden = crossing_before_branch_end(system, guard_set, fired, begin, end, tolerance, values_at)) {
+double root_of_step(const GuardSet& guard_set, std::vector<std::size_t>& fired, double begin, double end,
+                    double tolerance, const std::function<void(double, std::span<double>)>& values_at) {
+  if (const auto hidden = crossing_before_branch_end(guard_set, fired, begin, end, tolerance, values_at)) {
     fired.assign(1, hidden->guard);
     return hidden->xi;
   }

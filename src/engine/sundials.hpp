@@ -108,9 +108,8 @@ int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentS
 /// @param tolerance   magnitude below which a guard counts as zero
 /// @param values_at   (xi, values): evaluates the guards at xi within the step
 /// @return step coordinate where the step has to end
-[[nodiscard]] double root_of_step(const HybridSystem& system, const GuardSet& guard_set,
-                                  std::vector<std::size_t>& fired, double begin, double end, double tolerance,
-                                  const std::function<void(double, std::span<double>)>& values_at);
+[[nodiscard]] double root_of_step(const GuardSet& guard_set, std::vector<std::size_t>& fired, double begin, double end,
+                                  double tolerance, const std::function<void(double, std::span<double>)>& values_at);
 
 /// The unknowns with the largest weighted local errors, worst first, as "name (weighted error)".
 [[nodiscard]] std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,

@@ -141,7 +141,7 @@ struct ArkodeLibrary {
 template <class Library>
 class SundialsOde final : public Integrator {
  public:
-  SundialsOde(OdeMethod method, HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances,
+  SundialsOde(OdeMethod method, Equations& system, GuardSet& guard_set, const Tolerances& tolerances,
               ForwardSensitivities* sensitivities)
       : system_(system),
         guard_set_(guard_set),
@@ -326,8 +326,7 @@ class SundialsOde final : public Integrator {
       ++roots_.evaluations;
       guard_set_.values(xi, form_.complete(xi, view(errors_.get())), values);
     };
-    const double root =
-        root_of_step(system_, guard_set_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
+    const double root = root_of_step(guard_set_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
     if (root == end_) return;
     end_ = root;
     check("GetDky", Library::derivative(memory_.get(), end_, 0, y_.get()));
@@ -495,7 +494,7 @@ class SundialsOde final : public Integrator {
     return {why, end_, step, details, library};
   }
 
-  HybridSystem& system_;
+  Equations& system_;
   GuardSet& guard_set_;
   OdeMethod method_;
   Tolerances tolerances_, of_step_;
@@ -561,7 +560,7 @@ void SundialsOde<ArkodeLibrary>::create() {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, HybridSystem& system, GuardSet& guard_set,
+std::unique_ptr<Integrator> make_sundials_ode(OdeMethod method, Equations& system, GuardSet& guard_set,
                                               const Tolerances& tolerances, ForwardSensitivities* sensitivities) {
   if (method == OdeMethod::cvode_adams || method == OdeMethod::cvode_bdf) {
     return std::make_unique<SundialsOde<CvodeLibrary>>(method, system, guard_set, tolerances, sensitivities);

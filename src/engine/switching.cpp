@@ -14,7 +14,7 @@ constexpr long k_most_explicit_steps = 400;
 
 class Switching final : public Integrator {
  public:
-  Switching(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances)
+  Switching(Equations& system, GuardSet& guard_set, const Tolerances& tolerances)
       : system_(system),
         direct_(make_direct(system, tolerances.rtol, guard_set, 0)),
         explicit_(make_stepped(OdeintMethod::dopri5, system, guard_set, tolerances)),
@@ -61,7 +61,7 @@ class Switching final : public Integrator {
     return {direct_.get(), explicit_.get(), implicit_.get()};
   }
 
-  HybridSystem& system_;
+  Equations& system_;
   std::unique_ptr<Integrator> direct_;
   std::unique_ptr<Integrator> explicit_;
   std::unique_ptr<Integrator> implicit_;
@@ -74,7 +74,7 @@ class Switching final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_switching(HybridSystem& system, GuardSet& guard_set, const Tolerances& tolerances) {
+std::unique_ptr<Integrator> make_switching(Equations& system, GuardSet& guard_set, const Tolerances& tolerances) {
   return std::make_unique<Switching>(system, guard_set, tolerances);
 }
 

@@ -28,7 +28,7 @@ class FiredGuards : public ::testing::Test {
     GuardSet set(toy_);
     set.begin_step(conditions, 0.0, std::vector<double>{integrator_.curve(0.0)});
     integrator_.guards = {0};
-    return fired_guards(toy_, set, integrator_, 0.4, 0.5, std::vector<double>{integrator_.curve(0.5)});
+    return fired_guards(set, integrator_, 0.4, 0.5, std::vector<double>{integrator_.curve(0.5)});
   }
 
   ToySystem toy_;
@@ -61,9 +61,9 @@ TEST_F(FiredGuards, AreMarksIfAllOfThemMarkAnInstant) {
   EXPECT_EQ(fire({mark, guard_at(0.5)}), Guards{0}) << "a mark brings no other guard with it";
   GuardSet set(toy_);
   set.begin_step({}, 0.0, std::vector<double>{0.0});
-  EXPECT_TRUE(are_marks(toy_, set, Guards{0}));
-  EXPECT_FALSE(are_marks(toy_, set, Guards{0, 1}));
-  EXPECT_FALSE(are_marks(toy_, set, Guards{}));
+  EXPECT_TRUE(are_marks(set, Guards{0}));
+  EXPECT_FALSE(are_marks(set, Guards{0, 1}));
+  EXPECT_FALSE(are_marks(set, Guards{}));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class CentreMode {
       unknowns.push_back({.name = k_centre_unknowns[k],
                           .kind = Unknown::Kind::algebraic,
                           .scale = reach,
-                          .is_implicitly_algebraic = true,
+                          .is_algebraic_in_residual = true,
                           .is_dependent = true});
     }
   }

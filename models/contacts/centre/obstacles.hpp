@@ -11,11 +11,11 @@ namespace monograin::contacts {
 
 /// A class of walls that the particle must not overlap.
 struct Obstacle {
-  std::size_t index;    ///< of the class
-  Eigen::Vector3d arm;  ///< mean normal along the free directions of the centre
-  double displacement;  ///< overlap with the centre at its initial position; negative for a gap
+  std::size_t index;         ///< of the class
+  Eigen::Vector3d arm;       ///< mean normal along the free directions of the centre
+  double overlap_at_origin;  ///< with the centre at its initial position; negative for a gap
 
-  [[nodiscard]] double overlap(const Eigen::Vector3d& c) const { return displacement + arm.dot(c); }
+  [[nodiscard]] double overlap(const Eigen::Vector3d& c) const { return overlap_at_origin + arm.dot(c); }
 };
 
 /// Moves the centre by the smallest displacement after which it clears all walls. Takes the walls in turn: a wall that

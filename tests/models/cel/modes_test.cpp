@@ -27,7 +27,6 @@ struct Pair {
   /// Moves from a displacement to another.
   void drive(double from, double to) {
     p.classes[0].drive = contacts::WallDrive({from, to, Control::displacement}, 1.0);
-    p.forget();
     Newton().solve(p, 0.0, y);
   }
   std::vector<std::string> decide() {

@@ -282,7 +282,6 @@ TEST(CelParticleRates, UnderPrescribedForcesAreThoseOfTheirDisplacements) {
         by_displacement, [](const Particle& p, std::span<const double>) { return p.classes[0].contact.F; });
     first.drive = contacts::WallDrive({force, force + force_rate, Control::force}, 1.0);
     now.y[0] = force;
-    now.particle.forget();
     const std::vector<double> by_force = now.rates();
     EXPECT_NEAR(by_force[0], force_rate, 1e-12 * (1.0 + std::abs(force_rate)));
     for (std::size_t j = 1; j < by_force.size(); ++j) {

@@ -15,7 +15,6 @@ TEST(NonlocalEvasion, CountsAWallThatTouchesUpToRoundOffAsTouching) {
   const Obstacle wall{0, Eigen::Vector3d::UnitX(), 0.3};
   EXPECT_EQ(free_approach(wall, {-0.3 + 1e-16, 0.0, 0.0}), 0.0);
   EXPECT_NEAR(free_approach(wall, {-0.3 + 1e-12, 0.0, 0.0}), 1e-12, 1e-15);
-  EXPECT_EQ(free_approach(wall, {-0.3 + 1e-12, 0.0, 0.0}, 1e-9), 0.0);
   // Far away across the wall, round-off is larger.
   EXPECT_EQ(free_approach(wall, {-0.3 + 1e-12, 1e6, 0.0}), 0.0);
 }

@@ -43,7 +43,7 @@ TEST(NonlocalParticle, HasTheRatesOfItsSolutions) {
     const double power = central_difference(
         [&](double x) { return pressed.particle.contacts().energy(pressed.particle.evaluate(x, pressed.at(x))); }, xi,
         0.02);
-    EXPECT_NEAR(rates[pressed.particle.work_place()], power, 1e-8);
+    EXPECT_NEAR(rates[pressed.particle.work_slot()], power, 1e-8);
     std::vector<double> residual(3);
     pressed.particle.residual(xi, pressed.at(xi), rates, residual);
     for (const double value : residual) EXPECT_NEAR(value, 0.0, 1e-14);
@@ -96,7 +96,7 @@ TEST(NonlocalParticle, SeesTheSideToWhichATouchingContactGoes) {
 
 TEST(NonlocalParticle, PassesTheBeginningOfAForceThatContactsAloneBear) {
   Particle particle(unit_settings(Centre::free), single_walls(simple()));
-  std::vector<double> y(particle.work_place() + 1, 0.0);
+  std::vector<double> y(particle.work_slot() + 1, 0.0);
   particle.set_ramps(std::vector<Ramp>{{0.0, 0.1, Control::force}, {0.0, 0.0}}, y);
   const double later = particle.leave_singularity(0.0, y);
   EXPECT_EQ(later, k_ahead);

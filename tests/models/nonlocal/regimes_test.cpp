@@ -16,7 +16,7 @@ struct Start {
   Start(double gap, const Ramp& first, const Ramp& second, Centre centre = Centre::fixed)
       : classes(single_walls(simple())), particle(unit_settings(centre), classes) {
     classes[0].gap = gap;
-    y.assign(particle.work_place() + 1, 0.0);
+    y.assign(particle.work_slot() + 1, 0.0);
     y[0] = first.start;
     y[1] = second.start;
     particle.set_ramps(std::vector<Ramp>{first, second}, y);

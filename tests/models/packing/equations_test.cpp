@@ -19,7 +19,7 @@ IntegratedState exact_state(const ControlledBranch& branch) {
   return {state(branch.law(), phi).particle_strain, phi};
 }
 
-Equations equations_at(const ControlledBranch& branch, const IntegratedState& y) {
+IntegratedEquations equations_at(const ControlledBranch& branch, const IntegratedState& y) {
   return {branch, Piece::either, k_scale, branch.value_at(y.packing_fraction)};
 }
 
@@ -27,7 +27,7 @@ TEST(PackingEquations, HoldInAStateOfTheLaw) {
   for (const auto& [name, branch] : branches()) {
     SCOPED_TRACE(name);
     const IntegratedState y = exact_state(branch);
-    const Equations equations = equations_at(branch, y);
+    const IntegratedEquations equations = equations_at(branch, y);
     EXPECT_NEAR(equations.strain(y), state(branch.law(), y.packing_fraction).strain, 1e-14);
     EXPECT_NEAR(equations.excess(y), 0.0, 1e-14);
     EXPECT_EQ(equations.within_branch(y).packing_fraction, y.packing_fraction);
@@ -39,7 +39,7 @@ TEST(PackingEquations, SlopesAreDifferenceQuotients) {
   for (const auto& [name, branch] : branches()) {
     SCOPED_TRACE(name);
     const IntegratedState y = exact_state(branch);
-    const Equations equations = equations_at(branch, y);
+    const IntegratedEquations equations = equations_at(branch, y);
     const auto [by_particles, by_fraction] = equations.excess_slopes(y);
     const auto excess = [&](double particles, double fraction) {
       return equations.excess({y.particle_strain + k_scale * particles, y.packing_fraction + fraction});
@@ -69,7 +69,7 @@ TEST(PackingEquations, AStateOffByAnIntegratorsErrorComesBackToThePrescribedValu
   for (const auto& [name, branch] : branches()) {
     SCOPED_TRACE(name);
     const IntegratedState y = exact_state(branch);
-    const Equations equations = equations_at(branch, y);
+    const IntegratedEquations equations = equations_at(branch, y);
     const IntegratedState found = equations.completed({y.particle_strain + 1e-5, y.packing_fraction - 2e-5});
     EXPECT_NEAR(equations.excess(found), 0.0, 1e-13);
     EXPECT_NEAR(found.packing_fraction, y.packing_fraction, 1e-3);
@@ -78,7 +78,7 @@ TEST(PackingEquations, AStateOffByAnIntegratorsErrorComesBackToThePrescribedValu
 
 TEST(PackingEquations, HaveNoStateBeyondTheEndOfTheBranch) {
   const ControlledBranch branch = limited_branch(Control::strain);
-  const Equations equations(branch, Piece::growing, k_scale, 1.01 * branch.range().greatest);
+  const IntegratedEquations equations(branch, Piece::growing, k_scale, 1.01 * branch.range().greatest);
   EXPECT_THROW(static_cast<void>(equations.completed({0.0, branch.range().end})), std::domain_error);
 }
 
