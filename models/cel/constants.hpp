@@ -33,8 +33,8 @@ inline constexpr double chi = 1.34517;  ///< advance of a wall per bulge of the 
 inline constexpr double w = 0.01;       ///< width of the change from chi to one, as the core shrinks; chosen
 
 // --- coverage, fitted
-inline constexpr double m2 = 0.292764;  ///< loss of force and area as pores begin to close
-inline constexpr double m4 = 0.447332;  ///< gain of force and area as pores are closed
+inline constexpr double m2 = 0.292764;  ///< loss of the limit force as pores begin to close
+inline constexpr double m4 = 0.447332;  ///< gain of the limit force as pores are closed
 inline constexpr double ab = 0.185636;  ///< area over pi R0^2 above which a carried contact is not weak
 inline constexpr double beta = 0.95;    ///< largest weakness of a carried contact; chosen
 

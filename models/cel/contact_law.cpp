@@ -13,9 +13,10 @@ namespace monograin::cel {
 namespace {
 
 using std::numbers::pi;
-namespace k = constants;
+namespace fit = constants;
 
-constexpr double X = 3.0 * pi / 4.0;
+/// Johnson's parameter of a Hertz contact over its mean pressure over Y.
+constexpr double k_johnson_by_pressure = 3.0 * pi / 4.0;
 
 /// Sine of half the angle, and last term of the series, of the self influence: part of the law's definition.
 constexpr double k_self_half_sine = 0.2;
@@ -27,10 +28,14 @@ constexpr double k_same_angle = 1e-12;
 Material::Material(double yield_stress, double poisson_ratio) noexcept
     : Y(yield_stress),
       Es(composite_modulus(1.0, poisson_ratio)),
-      xi_Y(k::pY * X),
+      xi_Y(fit::pY * k_johnson_by_pressure),
       a_Y(xi_Y * Y / Es),
       xi_by_zeta(Es / Y) {}
 
+/// With x = E* zeta/Y - xi_Y >= 0, by (cel-dent), (cel-pressure), (cel-limit) and (cel-influence) of docs/theory/cel.md:
+///   h = zeta^2 [k0 (x/(x + x1))^2 + k1 (zeta^2 - a_Y^2)/(1 + x/x2)]
+///   p = p_xi (1 + v^k)^(-1/k),   v = p_xi h/(ps (h + hs)),   p_xi = pY + p_Delta tau/(1 + sqrt(tau))^2
+///   q = exp(-q1 h)/3,            Gam = 1 + gam (1 - exp(-h/hg))
 Dent dent_of(const Material& material, double zeta) noexcept {
   const double rate = material.xi_by_zeta;
   const double x = std::max(0.0, zeta * rate - material.xi_Y);
@@ -38,50 +43,52 @@ Dent dent_of(const Material& material, double zeta) noexcept {
   dent.zeta = zeta;
 
   const double square = zeta * zeta;
-  const double per_x = 1.0 / (x + k::x1);
+  const double per_x = 1.0 / (x + fit::x1);
   const double t = x * per_x;
-  const double t_zeta = rate * k::x1 * per_x * per_x;
+  const double t_zeta = rate * fit::x1 * per_x * per_x;
   const double grown = square - material.a_Y * material.a_Y;
-  const double fading = k::x2 / (k::x2 + x);
-  const double share = k::k0 * t * t + k::k1 * grown * fading;
+  const double fading = fit::x2 / (fit::x2 + x);
+  const double share = fit::k0 * t * t + fit::k1 * grown * fading;
   dent.h = square * share;
-  dent.h_zeta = 2.0 * zeta * share + square * (2.0 * k::k0 * t * t_zeta + 2.0 * k::k1 * zeta * fading -
-                                               k::k1 * grown * fading * fading * rate / k::x2);
+  dent.h_zeta = 2.0 * zeta * share + square * (2.0 * fit::k0 * t * t_zeta + 2.0 * fit::k1 * zeta * fading -
+                                               fit::k1 * grown * fading * fading * rate / fit::x2);
 
-  constexpr double c = k::pinf - k::pY;
-  const double tau = x / (X * c);
+  constexpr double p_Delta = fit::pinf - fit::pY;
+  const double tau = x / (k_johnson_by_pressure * p_Delta);
   const double root = std::sqrt(tau);
   const double per_root = 1.0 / (1.0 + root);
-  const double p_xi = k::pY + c * tau * per_root * per_root;
-  const double p_xi_log = rate * per_root * per_root * per_root / (X * p_xi);
+  const double p_xi = fit::pY + p_Delta * tau * per_root * per_root;
+  const double p_xi_log = rate * per_root * per_root * per_root / (k_johnson_by_pressure * p_xi);
   // The exponent k = 5 is written out in v^4 v, so that nothing is divided by h.
-  static_assert(k::k == 5);
-  const double per_hs = 1.0 / (dent.h + k::hs);
-  const double per_h = p_xi * per_hs / k::ps;
+  static_assert(fit::k == 5);
+  const double per_hs = 1.0 / (dent.h + fit::hs);
+  const double per_h = p_xi * per_hs / fit::ps;
   const double v = per_h * dent.h;
   const double v4 = v * v * v * v;
   const double sum = 1.0 + v4 * v;
-  const double v_zeta = v * p_xi_log + per_h * dent.h_zeta * k::hs * per_hs;
-  dent.p = p_xi * std::exp(std::log(sum) * (-1.0 / k::k));
+  const double v_zeta = v * p_xi_log + per_h * dent.h_zeta * fit::hs * per_hs;
+  dent.p = p_xi * std::exp(std::log(sum) * (-1.0 / fit::k));
   dent.p_zeta = dent.p * (p_xi_log - v4 * v_zeta / sum);
 
-  dent.q = std::exp(-k::q1 * dent.h) / 3.0;
-  dent.q_zeta = -k::q1 * dent.q * dent.h_zeta;
-  const double fresh = std::exp(-dent.h / k::hg);
-  dent.root_Gam = std::sqrt(1.0 + k::gam * (1.0 - fresh));
-  dent.root_Gam_zeta = 0.5 * k::gam / k::hg * fresh * dent.h_zeta / dent.root_Gam;
+  dent.q = std::exp(-fit::q1 * dent.h) / 3.0;
+  dent.q_zeta = -fit::q1 * dent.q * dent.h_zeta;
+  const double fresh = std::exp(-dent.h / fit::hg);
+  dent.root_Gam = std::sqrt(1.0 + fit::gam * (1.0 - fresh));
+  dent.root_Gam_zeta = 0.5 * fit::gam / fit::hg * fresh * dent.h_zeta / dent.root_Gam;
   return dent;
 }
 
+/// (cel-coverage), and the factor 1/(1 + kap Om^4) of (cel-influence).
 Coverage coverage_of(double Om) noexcept {
-  const double shade = 1.0 / (1.0 + k::kap * raised<4>(Om));
+  const double shade = 1.0 / (1.0 + fit::kap * raised<4>(Om));
   return {.Om = Om,
-          .m = 1.0 - k::m2 * Om * Om + k::m4 * raised<4>(Om),
-          .m_Om = -2.0 * k::m2 * Om + 4.0 * k::m4 * raised<3>(Om),
+          .m = 1.0 - fit::m2 * Om * Om + fit::m4 * raised<4>(Om),
+          .m_Om = -2.0 * fit::m2 * Om + 4.0 * fit::m4 * raised<3>(Om),
           .shade = shade,
-          .shade_Om = -4.0 * k::kap * raised<3>(Om) * shade * shade};
+          .shade_Om = -4.0 * fit::kap * raised<3>(Om) * shade * shade};
 }
 
+/// (cel-limit) and (cel-elastic): dF/du = F/((1 - q) u) = 2 E* sqrt(area).
 Contact contact_by(const Material& material, const Dent& dent, double l, double m, double coordinate,
                    bool is_force) noexcept {
   const double rest = 1.0 - dent.q;
@@ -121,13 +128,14 @@ Contact contact_by(const Material& material, const Dent& dent, double l, double 
   return at;
 }
 
+/// (cel-advance): c = -[(1 + chi) y - (1 - chi) (sqrt(y^2 + w^2) - w)]/2 with y = l - 1.
 Advance advance_of(double growth) noexcept {
-  const double root = std::sqrt(growth * growth + k::w * k::w);
-  constexpr double same = -0.5 * (1.0 + k::chi);
-  constexpr double other = 0.5 * (1.0 - k::chi);
+  const double root = std::sqrt(growth * growth + fit::w * fit::w);
+  constexpr double same = -0.5 * (1.0 + fit::chi);
+  constexpr double other = 0.5 * (1.0 - fit::chi);
   const double per_root = 1.0 / root;
-  return {same * growth + other * (root - k::w), same + other * growth * per_root,
-          other * k::w * k::w * per_root * per_root * per_root};
+  return {same * growth + other * (root - fit::w), same + other * growth * per_root,
+          other * fit::w * fit::w * per_root * per_root * per_root};
 }
 
 std::vector<Coupling> couplings_of(double poisson_ratio, std::span<const ContactClass> classes) {

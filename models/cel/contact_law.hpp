@@ -4,7 +4,7 @@
 /// Lengths are over R0, stresses over E, forces over E R0^2, areas over pi R0^2; Y stands for Y/E. The dent of a
 /// contact is its largest radius zeta, referred to a sphere of unit radius: zeta = a_Y on a fresh surface, and zeta
 /// only grows. The law also depends on the support distance l of the core under the wall and on the coverage factor m
-/// of the particle. Own law of this project (docs/theory/cel.md, sections 2 to 4).
+/// of the particle. Own law of this project; labels such as (cel-dent) are those of equations in docs/theory/cel.md.
 #pragma once
 
 #include <span>
@@ -64,7 +64,7 @@ struct Slopes {
 /// Coverage Om of the particle's surface, half the contact area over pi R0^2, and what depends on it alone.
 struct Coverage {
   double Om = 0.0;
-  double m = 1.0, m_Om = 0.0;          ///< factor of force and area
+  double m = 1.0, m_Om = 0.0;          ///< factor of the limit force; the area has its root
   double shade = 1.0, shade_Om = 0.0;  ///< factor of the influence of neighbours
 };
 [[nodiscard]] Coverage coverage_of(double Om) noexcept;

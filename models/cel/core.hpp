@@ -3,7 +3,10 @@
 ///
 /// The core yields under stresses that depend on the walls and its own shape only. The shape therefore stays among the
 /// symmetric tensors that arise from the walls' normals by sums and by products a b + b a: two independent tensors for
-/// two walls or a die, three for walls along three axes, six in general (docs/theory/cel.md, sections 5 and 6).
+/// two walls or a die, three for walls along three axes, six in general.
+///
+/// Lam is the rate of flow of the core: the sum of F (1 - b) h'/X over the contacts that drive it. Equations are those
+/// of docs/theory/cel.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +23,7 @@ namespace monograin::cel {
 }
 
 /// An orthonormal basis of the tensors among which the shape of the core stays. The first is the unit tensor over
-/// sqrt(3), so that all others are deviators. Empty if there are no others: walls that load the core by pressures only
+/// sqrt(3), so that all others are deviators. Empty if the unit tensor is the only one: walls that load the core by pressures only
 /// leave its shape as it is.
 /// @param spreads  sum of n n over the walls of each class
 [[nodiscard]] std::vector<Eigen::Matrix3d> core_shapes(std::span<const Eigen::Matrix3d> spreads);

@@ -9,10 +9,10 @@
 /// with the wall displacement d, the centre x, the plastic indentation h, the advance c that the core makes room for,
 /// the elastic displacement u and the influence G of all contacts; the centre obeys sum F n = 0 (E). A contact that
 /// flows obeys f = (X + Q)^(1/n1) - 1 = 0, where X and Q are the used shares of the strengths of dent and core. The
-/// core flows by L = Lam M; the contacts that drive it determine Lam.
+/// core flows at the rate Lam (core.hpp), which the contacts that drive it determine.
 ///
 /// Lengths are over R0, stresses over E, forces over E R0^2, energies over E R0^3. Own law of this project
-/// (docs/theory/cel.md, sections 4 to 7).
+/// (docs/theory/cel.md); (K) and (E) are its (cel-kinematics).
 #pragma once
 
 #include <Eigen/Core>
@@ -78,7 +78,7 @@ struct ClassState : ClassMode {
   Contact contact{};
   double displacement = 0.0;  ///< displacement of the wall, by (K)
   Yield yield{};
-  double flow_by_dent = 0.0;  ///< Lam per rate of the dent, if the dent grows
+  double flow_by_dent = 0.0;  ///< Lam per rate of the dent, if it grows: n F (1 - b)/X dh/dzeta
 
   /// Displacement of the wall at the state that was evaluated; exact if it is prescribed.
   [[nodiscard]] double position(double xi) const noexcept {

@@ -68,14 +68,14 @@ bool is_held_softly(const Contacts& contacts, std::span<const Ramp> ramps, std::
 
 void CentreSupport::find_redundant(const Contacts& contacts) {
   if (std::ranges::all_of(walls_, [](const Wall& wall) { return wall.may_bear == wall.did_bear; })) return;
-  std::vector<Eigen::Vector3d> normals;
+  normals_.clear();
   for (std::size_t j = 0; j < walls_.size(); ++j) {
     walls_[j].did_bear = walls_[j].may_bear;
-    if (walls_[j].may_bear && pushes_centre(contacts, j)) normals.push_back(contacts.arm(j).normalized());
+    if (walls_[j].may_bear && pushes_centre(contacts, j)) normals_.push_back(contacts.arm(j).normalized());
   }
   for (std::size_t j = 0; j < walls_.size(); ++j) {
     walls_[j].is_redundant =
-        walls_[j].may_bear && pushes_centre(contacts, j) && !in_reaction_cone(contacts.arm(j), normals);
+        walls_[j].may_bear && pushes_centre(contacts, j) && !in_reaction_cone(contacts.arm(j), normals_);
   }
 }
 

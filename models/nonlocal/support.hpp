@@ -27,7 +27,9 @@ namespace monograin::nonlocal {
 /// leave it without approaching another one. A wall under force control never supports the centre.
 class CentreSupport {
  public:
-  explicit CentreSupport(const Contacts& contacts) : walls_(contacts.class_count()) {}
+  explicit CentreSupport(const Contacts& contacts) : walls_(contacts.class_count()) {
+    normals_.reserve(walls_.size());
+  }
 
   /// @param may_bear  class -> whether it may bear
   /// @param is_force  class -> whether it is under force control
@@ -67,6 +69,7 @@ class CentreSupport {
   void find_redundant(const Contacts& contacts);
 
   std::vector<Wall> walls_;
+  std::vector<Eigen::Vector3d> normals_;  ///< work space of find_redundant()
 };
 
 }  // namespace monograin::nonlocal
