@@ -1,21 +1,15 @@
 // Laws in closed form, evaluated element by element over arrays that broadcast. The Python files of the package
 // describe arguments, units, sources and domains.
 
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <cstring>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -25,6 +19,7 @@
 #include "compressible/regressions.hpp"
 #include "elastic/hertz.hpp"
 #include "elastic/line_contact.hpp"
+#include "elementwise.hpp"
 #include "interruptible.hpp"
 #include "mdr/adhesion.hpp"
 #include "mdr/relaxed_profile.hpp"
@@ -35,41 +30,6 @@
 #include "plastic/ludwik.hpp"
 #include "system/number_text.hpp"
 #include "system/resolution.hpp"
-
-namespace monograin::python {
-namespace {
-
-using Array = py::array_t<double>;
-
-}  // namespace
-
-/// Argument of a law: a number, or an array of numbers.
-struct Numbers {
-  Array array = py::reinterpret_steal<Array>(py::handle());
-};
-
-}  // namespace monograin::python
-
-namespace pybind11::detail {
-
-template <>
-struct type_caster<monograin::python::Numbers> {
-  PYBIND11_TYPE_CASTER(monograin::python::Numbers, const_name("numbers"));
-
-  /// Floats, integers and plain arrays are taken as they are; monograin._inputs converts, or refuses, whatever else
-  /// there is.
-  bool load(handle source, bool /*convert*/) {
-    const bool is_plain_array =
-        Py_TYPE(source.ptr()) == npy_api::get().PyArray_Type_ &&
-        std::string_view("fiub").find(reinterpret_borrow<array>(source).dtype().kind()) != std::string_view::npos;
-    const bool is_plain = PyFloat_Check(source.ptr()) || PyLong_CheckExact(source.ptr()) || is_plain_array;
-    if (is_plain) value.array = monograin::python::Array::ensure(source);
-    if (!value.array) value.array = module_::import("monograin._inputs").attr("numbers")(source);
-    return true;
-  }
-};
-
-}  // namespace pybind11::detail
 
 namespace monograin::python {
 namespace {
@@ -99,100 +59,11 @@ void require_poisson_ratio(double nu) {
   }
 }
 
-/// Elements of arrays that broadcast as in numpy, row by row.
-template <std::size_t N>
-class Elements {
- public:
-  /// @throws std::invalid_argument for arrays whose shapes do not broadcast
-  explicit Elements(const std::array<const Array*, N>& arrays) {
-    for (const Array* array : arrays) widen(*array);
-    std::ranges::reverse(shape_);
-    index_.resize(shape_.size());
-    for (std::size_t k = 0; k < N; ++k) {
-      next_[k] = static_cast<const char*>(static_cast<const void*>(arrays[k]->data()));
-      strides_[k].resize(shape_.size());
-      const auto missing = shape_.size() - static_cast<std::size_t>(arrays[k]->ndim());
-      for (std::size_t d = missing; d < shape_.size(); ++d) {
-        const auto own = static_cast<py::ssize_t>(d - missing);
-        if (arrays[k]->shape(own) != 1) strides_[k][d] = arrays[k]->strides(own);
-      }
-    }
-  }
-
-  /// Shape of the result.
-  [[nodiscard]] const std::vector<py::ssize_t>& shape() const { return shape_; }
-
-  /// The elements at one place of the result; the next call gives those at the next place.
-  std::array<double, N> take() {
-    std::array<double, N> values{};
-    for (std::size_t k = 0; k < N; ++k) std::memcpy(&values[k], next_[k], sizeof(double));
-    for (std::size_t d = shape_.size(); d-- > 0;) {
-      const bool goes_on = ++index_[d] < shape_[d];
-      for (std::size_t k = 0; k < N; ++k) next_[k] += goes_on ? strides_[k][d] : -strides_[k][d] * (shape_[d] - 1);
-      if (goes_on) break;
-      index_[d] = 0;
-    }
-    return values;
-  }
-
- private:
-  /// Widens the shape, from the last dimension on, by that of an array.
-  void widen(const Array& array) {
-    for (py::ssize_t k = 0; k < array.ndim(); ++k) {
-      const py::ssize_t size = array.shape(array.ndim() - 1 - k);
-      const auto place = static_cast<std::size_t>(k);
-      if (place == shape_.size()) shape_.push_back(1);
-      if (shape_[place] == 1) shape_[place] = size;
-      if (size != 1 && size != shape_[place]) {
-        throw std::invalid_argument("the arrays do not broadcast: one has " + std::to_string(shape_[place]) +
-                                    " elements where another has " + std::to_string(size));
-      }
-    }
-  }
-
-  std::vector<py::ssize_t> shape_;
-  std::vector<py::ssize_t> index_;
-  std::array<std::vector<py::ssize_t>, N> strides_;  ///< [bytes]; 0 along dimensions that an array lacks
-  std::array<const char*, N> next_{};
-};
-
-/// Calls `take` for every place of an array. Many places are filled without the interpreter's lock, until a signal's
-/// handler raises.
-template <class Take>
-void fill(Array& array, Take&& take) {
-  constexpr py::ssize_t k_piece = 2048;
-  double* const values = array.mutable_data();
-  const py::ssize_t count = array.size();
-  if (count <= k_piece) {
-    std::generate_n(values, count, take);
-    return;
-  }
-  SignalWatch watch;
-  {
-    const Unlocked unlocked;
-    for (py::ssize_t begin = 0; begin < count && !watch.has_raised(); begin += k_piece) {
-      std::generate_n(values + begin, std::min(k_piece, count - begin), std::ref(take));
-    }
-  }
-  watch.rethrow();
-}
-
-/// Makes a function of numpy arrays from a function of numbers.
-template <class Function>
-auto vectorized(Function function) {
-  return [function](const auto&... numbers) -> py::object {
-    Elements<sizeof...(numbers)> elements({&numbers.array...});
-    Array result(elements.shape());
-    fill(result, [&] { return std::apply(function, elements.take()); });
-    return elements.shape().empty() ? py::object(py::float_(*result.data())) : py::object(result);
-  };
-}
-
-/// Makes a function of numpy arrays from a function of numbers; NaN outside the domain of the law.
+/// Makes a function of arrays from a function of numbers; NaN outside the domain of the law.
 template <class... Args>
 auto elementwise(double (*function)(Args...)) {
-  return [function](const std::conditional_t<false, Args, Numbers>&... arrays) -> py::object {
-    return vectorized([function](Args... args) { return or_nan([&] { return function(args...); }); })(arrays...);
+  return [function](const std::conditional_t<false, Args, Numbers>&... arrays) {
+    return Elementwise([function](Args... args) { return or_nan([&] { return function(args...); }); }, arrays...);
   };
 }
 
@@ -244,25 +115,28 @@ double plastic_quantity(const plastic::Law& law, const std::string& quantity, do
   });
 }
 
-py::object semimech(const std::string& quantity, const std::string& configuration, const Numbers& youngs_modulus,
-                    const Numbers& poisson_ratio, const Numbers& yield_stress, const Numbers& radius,
-                    const Numbers& displacement) {
+Elementwise semimech(const std::string& quantity, const std::string& configuration, const Numbers& youngs_modulus,
+                     const Numbers& poisson_ratio, const Numbers& yield_stress, const Numbers& radius,
+                     const Numbers& displacement) {
   const plastic::Configuration walls = plastic::configuration_named(configuration);
-  LastMade<plastic::Law, 3> last;
-  return vectorized([&](double e, double nu, double y, double r, double d) {
-    const plastic::Law& law =
-        last.get({e, nu, y}, [&] { return plastic::make_semimech(plastic::make_semimech_material(e, nu, y), walls); });
-    return plastic_quantity(law, quantity, y, r, d);
-  })(youngs_modulus, poisson_ratio, yield_stress, radius, displacement);
+  return Elementwise(
+      [=, last = LastMade<plastic::Law, 3>()](double e, double nu, double y, double r, double d) mutable {
+        const plastic::Law& law = last.get(
+            {e, nu, y}, [&] { return plastic::make_semimech(plastic::make_semimech_material(e, nu, y), walls); });
+        return plastic_quantity(law, quantity, y, r, d);
+      },
+      youngs_modulus, poisson_ratio, yield_stress, radius, displacement);
 }
 
-py::object hardening(const std::string& quantity, const std::string& configuration, const Numbers& strength,
-                     const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
+Elementwise hardening(const std::string& quantity, const std::string& configuration, const Numbers& strength,
+                      const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
   const plastic::Configuration walls = plastic::configuration_named(configuration);
-  LastMade<plastic::Law, 1> last;
-  return vectorized([&](double kappa, double mu, double r, double d) {
-    return plastic_quantity(last.get({mu}, [&] { return plastic::make_hardening(mu, walls); }), quantity, kappa, r, d);
-  })(strength, exponent, radius, displacement);
+  return Elementwise(
+      [=, last = LastMade<plastic::Law, 1>()](double kappa, double mu, double r, double d) mutable {
+        return plastic_quantity(last.get({mu}, [&] { return plastic::make_hardening(mu, walls); }), quantity, kappa, r,
+                                d);
+      },
+      strength, exponent, radius, displacement);
 }
 
 plastic::SimilarityRadius radius_rule(const std::string& given) {
@@ -270,29 +144,33 @@ plastic::SimilarityRadius radius_rule(const std::string& given) {
   return word<Rule>(given, {{"parabolic", Rule::parabolic}, {"corrected", Rule::corrected}});
 }
 
-py::object similarity(const std::string& quantity, const std::string& rule, const Numbers& strength,
-                      const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
+Elementwise similarity(const std::string& quantity, const std::string& rule, const Numbers& strength,
+                       const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
   const plastic::SimilarityRadius radius_law = radius_rule(rule);
-  return vectorized([&](double kappa, double mu, double r, double d) {
-    return plastic_quantity(plastic::make_similarity(mu, radius_law), quantity, kappa, r, d);
-  })(strength, exponent, radius, displacement);
+  return Elementwise(
+      [=](double kappa, double mu, double r, double d) {
+        return plastic_quantity(plastic::make_similarity(mu, radius_law), quantity, kappa, r, d);
+      },
+      strength, exponent, radius, displacement);
 }
 
 /// Quantity of a contact of two plastic spheres, in SI units.
 /// @param quantity  contact_radius, force or work at an approach; approach under a force
 /// @param argument  the approach [m], or the force [N]
-py::object similarity_pair(const std::string& quantity, const std::string& rule, const Numbers& strength,
-                           const Numbers& exponent, const Numbers& first_radius, const Numbers& second_radius,
-                           const Numbers& argument) {
+Elementwise similarity_pair(const std::string& quantity, const std::string& rule, const Numbers& strength,
+                            const Numbers& exponent, const Numbers& first_radius, const Numbers& second_radius,
+                            const Numbers& argument) {
   const plastic::SimilarityRadius radius_law = radius_rule(rule);
-  return vectorized([&](double kappa, double mu, double first, double second, double given) {
-    const plastic::SimilarityLaw law = plastic::make_similarity(mu, radius_law);
-    const plastic::SimilarityPair pair = plastic::make_similarity_pair(first, second);
-    if (quantity == "approach") return plastic::similarity_approach(law, pair, kappa, given);
-    if (quantity == "work") return plastic::similarity_work(law, pair, kappa, given);
-    const plastic::SimilarityContact contact = plastic::similarity_contact(law, pair, kappa, given);
-    return quantity == "force" ? contact.force : contact.contact_radius;
-  })(strength, exponent, first_radius, second_radius, argument);
+  return Elementwise(
+      [=](double kappa, double mu, double first, double second, double given) {
+        const plastic::SimilarityLaw law = plastic::make_similarity(mu, radius_law);
+        const plastic::SimilarityPair pair = plastic::make_similarity_pair(first, second);
+        if (quantity == "approach") return plastic::similarity_approach(law, pair, kappa, given);
+        if (quantity == "work") return plastic::similarity_work(law, pair, kappa, given);
+        const plastic::SimilarityContact contact = plastic::similarity_contact(law, pair, kappa, given);
+        return quantity == "force" ? contact.force : contact.contact_radius;
+      },
+      strength, exponent, first_radius, second_radius, argument);
 }
 
 plastic::LudwikMaterial ludwik_material(double youngs_modulus, double yield_stress, double strength, double exponent) {
@@ -316,18 +194,20 @@ nonlocal::Terms terms_named(const std::string& given) {
       given, {{"1", Terms::one}, {"2", Terms::two}, {"3", Terms::three}, {"4", Terms::four}, {"inf", Terms::all}});
 }
 
-py::object curved_sphere(const std::string& quantity, const std::string& terms, const Numbers& composite_modulus,
-                         const Numbers& radius, const Numbers& overlap) {
+Elementwise curved_sphere(const std::string& quantity, const std::string& terms, const Numbers& composite_modulus,
+                          const Numbers& radius, const Numbers& overlap) {
   const nonlocal::LocalLaw law(terms_named(terms));
-  return vectorized([&](double modulus, double r, double delta) {
-    if (delta <= 0.0) return 0.0;
-    return or_nan([&] {
-      const double s = law.signed_square(delta / r);
-      if (quantity == "energy") return law.energy(s) * modulus * r * r * r;
-      const nonlocal::LocalContact contact = law.at(s);
-      return quantity == "force" ? contact.force * modulus * r * r : contact.contact_radius * r;
-    });
-  })(composite_modulus, radius, overlap);
+  return Elementwise(
+      [=](double modulus, double r, double delta) {
+        if (delta <= 0.0) return 0.0;
+        return or_nan([&] {
+          const double s = law.signed_square(delta / r);
+          if (quantity == "energy") return law.energy(s) * modulus * r * r * r;
+          const nonlocal::LocalContact contact = law.at(s);
+          return quantity == "force" ? contact.force * modulus * r * r : contact.contact_radius * r;
+        });
+      },
+      composite_modulus, radius, overlap);
 }
 
 mdr::ElasticProfile profile_named(const std::string& given) {
@@ -335,34 +215,37 @@ mdr::ElasticProfile profile_named(const std::string& given) {
   return word<Profile>(given, {{"ellipse", Profile::ellipse}, {"parabola", Profile::parabola}});
 }
 
-py::object mdr_elastic(const std::string& quantity, const std::string& profile, const Numbers& composite_modulus,
-                       const Numbers& radius, const Numbers& overlap) {
+Elementwise mdr_elastic(const std::string& quantity, const std::string& profile, const Numbers& composite_modulus,
+                        const Numbers& radius, const Numbers& overlap) {
   const mdr::ElasticProfile shape = profile_named(profile);
-  return vectorized([&](double modulus, double r, double delta) {
-    require_positive({{"modulus", modulus}, {"radius", r}});
-    return or_nan([&] {
-      if (quantity == "energy") return mdr::elastic_energy(shape, modulus, r, delta);
-      const mdr::Contact contact = mdr::elastic_contact(shape, modulus, r, delta);
-      return quantity == "force" ? contact.force : contact.contact_radius;
-    });
-  })(composite_modulus, radius, overlap);
+  return Elementwise(
+      [=](double modulus, double r, double delta) {
+        require_positive({{"modulus", modulus}, {"radius", r}});
+        return or_nan([&] {
+          if (quantity == "energy") return mdr::elastic_energy(shape, modulus, r, delta);
+          const mdr::Contact contact = mdr::elastic_contact(shape, modulus, r, delta);
+          return quantity == "force" ? contact.force : contact.contact_radius;
+        });
+      },
+      composite_modulus, radius, overlap);
 }
 
-py::object mdr_plastic(const std::string& quantity, const Numbers& youngs_modulus, const Numbers& poisson_ratio,
-                       const Numbers& yield_stress, const Numbers& radius, const Numbers& overlap) {
-  LastMade<mdr::Material, 3> last;
-  return vectorized([&](double e, double nu, double y, double r, double delta) {
-    require_positive({{"youngs_modulus", e}, {"yield_stress", y}, {"radius", r}});
-    require_poisson_ratio(nu);
-    const mdr::Material& material = last.get({e, nu, y}, [&] { return mdr::make_material(e, nu, y); });
-    return or_nan([&] {
-      if (quantity == "mean_pressure") return mdr::plastic_pressure(material, delta / r).pressure;
-      if (delta < material.yield_overlap_ratio * r * (1.0 - k_same_value)) return k_nan;
-      const double c = mdr::yield_area_constant(material.yield_overlap_ratio, r);
-      const mdr::Contact contact = mdr::plastic_contact(material, r, delta, c);
-      return quantity == "force" ? contact.force : contact.contact_radius;
-    });
-  })(youngs_modulus, poisson_ratio, yield_stress, radius, overlap);
+Elementwise mdr_plastic(const std::string& quantity, const Numbers& youngs_modulus, const Numbers& poisson_ratio,
+                        const Numbers& yield_stress, const Numbers& radius, const Numbers& overlap) {
+  return Elementwise(
+      [=, last = LastMade<mdr::Material, 3>()](double e, double nu, double y, double r, double delta) mutable {
+        require_positive({{"youngs_modulus", e}, {"yield_stress", y}, {"radius", r}});
+        require_poisson_ratio(nu);
+        const mdr::Material& material = last.get({e, nu, y}, [&] { return mdr::make_material(e, nu, y); });
+        return or_nan([&] {
+          if (quantity == "mean_pressure") return mdr::plastic_pressure(material, delta / r).pressure;
+          if (delta < material.yield_overlap_ratio * r * (1.0 - k_same_value)) return k_nan;
+          const double c = mdr::yield_area_constant(material.yield_overlap_ratio, r);
+          const mdr::Contact contact = mdr::plastic_contact(material, r, delta, c);
+          return quantity == "force" ? contact.force : contact.contact_radius;
+        });
+      },
+      youngs_modulus, poisson_ratio, yield_stress, radius, overlap);
 }
 
 Control control_named(const std::string& given) {
@@ -372,18 +255,20 @@ Control control_named(const std::string& given) {
 /// Force at pull-off, or the contact radius at pull-off.
 /// @param quantity  force; any other text: contact radius
 /// @param control   controlled quantity at pull-off: force or displacement
-py::object mdr_pull_off(const std::string& quantity, const std::string& profile, const std::string& control,
-                        const Numbers& composite_modulus, const Numbers& radius, const Numbers& surface_energy) {
+Elementwise mdr_pull_off(const std::string& quantity, const std::string& profile, const std::string& control,
+                         const Numbers& composite_modulus, const Numbers& radius, const Numbers& surface_energy) {
   const mdr::ElasticProfile shape = profile_named(profile);
   const Control prescribed = control_named(control);
-  return vectorized([&](double modulus, double r, double energy) {
-    require_positive({{"modulus", modulus}, {"radius", r}, {"surface_energy", energy}});
-    return or_nan([&] {
-      const mdr::Indenter indenter = mdr::elastic_indenter(shape, r);
-      const double a = mdr::critical_radius(indenter, modulus, energy, prescribed);
-      return quantity == "force" ? mdr::peel_state(indenter, modulus, energy, a).force : a;
-    });
-  })(composite_modulus, radius, surface_energy);
+  return Elementwise(
+      [=](double modulus, double r, double energy) {
+        require_positive({{"modulus", modulus}, {"radius", r}, {"surface_energy", energy}});
+        return or_nan([&] {
+          const mdr::Indenter indenter = mdr::elastic_indenter(shape, r);
+          const double a = mdr::critical_radius(indenter, modulus, energy, prescribed);
+          return quantity == "force" ? mdr::peel_state(indenter, modulus, energy, a).force : a;
+        });
+      },
+      composite_modulus, radius, surface_energy);
 }
 
 /// @throws std::invalid_argument for an array of more or fewer dimensions than one
@@ -416,37 +301,40 @@ py::tuple mdr_peel_curve(const Numbers& radii, const Numbers& heights, double co
 
 // --- compressible particle and packing
 
-py::object compressible_unloading(const Numbers& stiffness, const Numbers& transition, const Numbers& exponent,
-                                  const Numbers& hertz_stiffness, const Numbers& unloading_exponent,
-                                  const Numbers& stiffness_ratio, const Numbers& largest, const Numbers& displacement) {
+Elementwise compressible_unloading(const Numbers& stiffness, const Numbers& transition, const Numbers& exponent,
+                                   const Numbers& hertz_stiffness, const Numbers& unloading_exponent,
+                                   const Numbers& stiffness_ratio, const Numbers& largest,
+                                   const Numbers& displacement) {
   using namespace compressible;
-  return vectorized(
+  return Elementwise(
       [](double k, double delta_t, double a, double k_hertz, double alpha, double beta, double dm, double d) {
         const UnloadingRule rule(UnloadingShape{alpha, beta});
         const UnloadingCurve curve = unloading_from(make_loading_law(k, delta_t, a), k_hertz, rule, dm);
         return d <= curve.separation() ? 0.0 : unloading_force(curve, d);
-      })(stiffness, transition, exponent, hertz_stiffness, unloading_exponent, stiffness_ratio, largest, displacement);
+      },
+      stiffness, transition, exponent, hertz_stiffness, unloading_exponent, stiffness_ratio, largest, displacement);
 }
 
-py::object packing_quantity(const std::string& quantity, const Numbers& packing_fraction, const Numbers& youngs_modulus,
-                            const Numbers& poisson_ratio, const Numbers& yield_stress,
-                            const Numbers& hardening_modulus) {
-  LastMade<packing::Law, 4> last;
-  return vectorized([&](double phi, double e, double nu, double y, double h) {
-    const packing::Law& law = last.get({e, nu, y, h}, [&] {
-      packing::Parameters parameters;
-      parameters.youngs_modulus = e;
-      parameters.poisson_ratio = nu;
-      if (!std::isinf(y)) parameters.plasticity = packing::Plasticity{y, h};
-      return packing::make_law(parameters);
-    });
-    return or_nan([&] {
-      if (quantity == "coordination_number") return packing::coordination_number(law, phi);
-      if (quantity == "plastic_fraction") return packing::plastic_fraction(law, phi);
-      const packing::State state = packing::state(law, phi);
-      return quantity == "stress" ? state.stress : state.modulus;
-    });
-  })(packing_fraction, youngs_modulus, poisson_ratio, yield_stress, hardening_modulus);
+Elementwise packing_quantity(const std::string& quantity, const Numbers& packing_fraction,
+                             const Numbers& youngs_modulus, const Numbers& poisson_ratio, const Numbers& yield_stress,
+                             const Numbers& hardening_modulus) {
+  return Elementwise(
+      [=, last = LastMade<packing::Law, 4>()](double phi, double e, double nu, double y, double h) mutable {
+        const packing::Law& law = last.get({e, nu, y, h}, [&] {
+          packing::Parameters parameters;
+          parameters.youngs_modulus = e;
+          parameters.poisson_ratio = nu;
+          if (!std::isinf(y)) parameters.plasticity = packing::Plasticity{y, h};
+          return packing::make_law(parameters);
+        });
+        return or_nan([&] {
+          if (quantity == "coordination_number") return packing::coordination_number(law, phi);
+          if (quantity == "plastic_fraction") return packing::plastic_fraction(law, phi);
+          const packing::State state = packing::state(law, phi);
+          return quantity == "stress" ? state.stress : state.modulus;
+        });
+      },
+      packing_fraction, youngs_modulus, poisson_ratio, yield_stress, hardening_modulus);
 }
 
 void add_elastic(py::module_& laws) {
@@ -530,6 +418,7 @@ void add_compressible(py::module_& laws) {
 }  // namespace
 
 void add_laws(py::module_& module) {
+  py::class_<Elementwise>(module, "Elementwise").def("into", &Elementwise::into);
   py::module_ laws = module.def_submodule("laws");
   add_elastic(laws);
   add_mdr(laws);

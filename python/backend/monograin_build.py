@@ -18,6 +18,8 @@ import tomllib
 import zipfile
 from typing import Any, Iterator, Mapping, Optional
 
+from law_stubs import law_stubs
+
 Settings = Optional[Mapping[str, Any]]
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -50,6 +52,8 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
     with WheelFile(pathlib.Path(wheel_directory) / name) as wheel:
         for source, target in package_files(module):
             wheel.add(target, source.read_bytes(), mode=0o755 if source == module else 0o644)
+        for stub, text in law_stubs(ROOT / "python" / NAME / "laws"):
+            wheel.add(f"{NAME}/laws/{stub}", text.encode())
         for target, text in metadata_files().items():
             wheel.add(target, text.encode())
     return name

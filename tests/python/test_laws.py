@@ -43,6 +43,52 @@ def test_arguments_broadcast_and_scalars_stay_scalars():
     assert laws.hertz.force(np.ones((4, 1)), np.ones(3), np.full((2, 1, 1), 1e-5)).shape == (2, 4, 3)
 
 
+def test_a_law_writes_its_result_into_an_array_of_the_caller():
+    overlap = np.linspace(1e-5, 1e-3, 5000)
+    expected = laws.hertz.force(1e9, 0.01, overlap)
+    for target in (np.empty(5000), np.empty((5000, 2))[:, 1], np.empty(10_000)[::-2]):
+        assert laws.hertz.force(1e9, 0.01, overlap, out=target) is target
+        assert_array_equal(target, expected)
+    alone = np.empty(())
+    assert laws.hertz.force(1e9, 0.01, overlap[7], out=alone) is alone
+    assert alone == expected[7]
+    table = np.empty((2, 3))
+    laws.similarity.force([[1e7], [2e7]], 0.3, 0.01, [1e-5, 2e-5, 3e-5], rule="corrected", out=table)
+    assert_array_equal(table, laws.similarity.force([[1e7], [2e7]], 0.3, 0.01, [1e-5, 2e-5, 3e-5], rule="corrected"))
+
+
+def test_the_array_for_the_result_may_share_memory_with_arguments():
+    overlap = np.linspace(1e-5, 1e-3, 5000)
+    expected = laws.hertz.force(1e9, 0.01, overlap)
+    same = overlap.copy()
+    laws.hertz.force(1e9, 0.01, same, out=same)
+    assert_array_equal(same, expected)
+    # Every element is read after the one before it was written, if that were done in place.
+    shifted = np.append(overlap, 0.0)
+    laws.hertz.force(1e9, 0.01, shifted[:-1], out=shifted[1:])
+    assert_array_equal(shifted[1:], expected)
+    square = np.linspace(1e-5, 1e-3, 2500).reshape(50, 50)
+    transposed = laws.hertz.force(1e9, 0.01, square.T)
+    laws.hertz.force(1e9, 0.01, square.T, out=square)
+    assert_array_equal(square, transposed)
+    column = np.full((3, 3), 1e-4)
+    laws.hertz.force(1e9, [0.01, 0.02, 0.03], column[:, :1], out=column)
+    assert_array_equal(column, [laws.hertz.force(1e9, [0.01, 0.02, 0.03], 1e-4)] * 3)
+
+
+def test_an_array_that_cannot_hold_the_result_is_refused():
+    locked = np.empty(3)
+    locked.flags.writeable = False
+    for wrong in ([0.0] * 3, np.empty(3, dtype=int), np.empty(3, dtype=np.float32), locked, 1.0):
+        with pytest.raises(TypeError, match="^out: expected "):
+            laws.hertz.force(1e9, 0.01, [1e-4] * 3, out=wrong)
+    for wrong, shape in ((np.empty(4), r"\(4,\)"), (np.empty((1, 3)), r"\(1, 3\)"), (np.empty(()), r"\(\)")):
+        with pytest.raises(ValueError, match=rf"^out: its shape is {shape}; expected that of the result, \(3,\)"):
+            laws.hertz.force(1e9, 0.01, [1e-4] * 3, out=wrong)
+    with pytest.raises(TypeError, match="^modulus: expected real numbers"):
+        laws.hertz.force("x", 0.01, 1e-4, out=np.empty(()))
+
+
 def test_without_contact_nothing_acts():
     for force in (
         laws.hertz.force(1e9, 0.01, -1e-5),

@@ -5,6 +5,9 @@ of a law the result is nan, as it is for masked elements. Inadmissible parameter
 arrays that do not broadcast raise ``ValueError``; what is no real number raises ``TypeError``. Other threads go on while
 a long array is evaluated, and Ctrl-C ends it; a curve of :func:`mdr.peel_curve` is completed first.
 
+As in numpy, ``out`` names an array that receives the result, so that a loop needs no new array for each call. It may be
+one of the arguments.
+
 - :mod:`monograin.laws.hertz`: an elastic sphere at a rigid wall
 - :mod:`monograin.laws.curved_sphere`: an elastic sphere at a rigid wall, with the curvature of the sphere's profile
 - :mod:`monograin.laws.line_contact`: an elastic cylinder between two walls

@@ -8,12 +8,10 @@ Source: Edmans and Sinka, eqs. 6 and 9 to 14, appendix A.
 
 from __future__ import annotations
 
-from typing import Any
-
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._inputs import explained
+from .._law import Elementwise, law
 
 __all__ = [
     "exponent",
@@ -26,8 +24,10 @@ __all__ = [
 ]
 
 
-@explained
-def loading_force(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLike, displacement: ArrayLike) -> Any:
+@law
+def loading_force(
+    stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLike, displacement: ArrayLike
+) -> Elementwise:
     """Returns the force of first loading: k d up to delta_t, then k delta_t exp(a (d - delta_t)).
 
     Source: Edmans and Sinka (n.d.), eq. 6.
@@ -41,8 +41,10 @@ def loading_force(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLi
     return _core.laws.compressible_loading_force(stiffness, transition, exponent, displacement)
 
 
-@explained
-def loading_work(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLike, displacement: ArrayLike) -> Any:
+@law
+def loading_work(
+    stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLike, displacement: ArrayLike
+) -> Elementwise:
     """Returns the work of first loading since first touch.
 
     Source: Edmans and Sinka (n.d.), the integral of eq. 6.
@@ -53,7 +55,7 @@ def loading_work(stiffness: ArrayLike, transition: ArrayLike, exponent: ArrayLik
     return _core.laws.compressible_loading_work(stiffness, transition, exponent, displacement)
 
 
-@explained
+@law
 def unloading_force(
     stiffness: ArrayLike,
     transition: ArrayLike,
@@ -64,7 +66,7 @@ def unloading_force(
     *,
     unloading_exponent: ArrayLike = 1.5,
     stiffness_ratio: ArrayLike = 1.0,
-) -> Any:
+) -> Elementwise:
     """Returns the force of unloading from a largest displacement, fm ((d - d0)/(dm - d0))^alpha.
 
     Source: Edmans and Sinka (n.d.), eqs. 9 and 11 to 14.
@@ -82,8 +84,8 @@ def unloading_force(
     )
 
 
-@explained
-def hertz_stiffness(modulus_ratio: ArrayLike, poisson_ratio: ArrayLike) -> Any:
+@law
+def hertz_stiffness(modulus_ratio: ArrayLike, poisson_ratio: ArrayLike) -> Elementwise:
     """Returns the stiffness k_H of Hertz's law f = k_H d^(3/2) for the same material.
 
     Source: Edmans and Sinka (n.d.), eq. 10.
@@ -95,8 +97,8 @@ def hertz_stiffness(modulus_ratio: ArrayLike, poisson_ratio: ArrayLike) -> Any:
     return _core.laws.compressible_hertz_stiffness(modulus_ratio, poisson_ratio)
 
 
-@explained
-def stiffness(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
+@law
+def stiffness(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Elementwise:
     """Returns the stiffness k of the loading law by the source's regression.
 
     Source: Edmans and Sinka (n.d.), eq. A.1, one coefficient corrected.
@@ -108,8 +110,8 @@ def stiffness(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
     return _core.laws.compressible_stiffness(modulus_ratio, shear_ratio)
 
 
-@explained
-def transition(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
+@law
+def transition(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Elementwise:
     """Returns the end delta_t of the linear part by the source's regression.
 
     Source: Edmans and Sinka (n.d.), eq. A.2, one coefficient corrected.
@@ -120,8 +122,8 @@ def transition(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
     return _core.laws.compressible_transition(modulus_ratio, shear_ratio)
 
 
-@explained
-def exponent(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Any:
+@law
+def exponent(modulus_ratio: ArrayLike, shear_ratio: ArrayLike) -> Elementwise:
     """Returns the exponent a of the loading law by the source's regression.
 
     Source: Edmans and Sinka (n.d.), eq. A.3.

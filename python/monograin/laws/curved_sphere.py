@@ -9,18 +9,16 @@ Source: Agarwal and Gonzalez, section 4 and appendix B.
 
 from __future__ import annotations
 
-from typing import Any
-
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._inputs import explained
+from .._law import Elementwise, law
 
 __all__ = ["contact_radius", "energy", "force"]
 
 
-@explained
-def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Any:
+@law
+def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Elementwise:
     """Returns the normal force [N], positive in compression; 0 without contact.
 
     Source: Agarwal and Gonzalez (2018), eqs. 27, 31 and 35; all terms: eq. 19.
@@ -34,8 +32,8 @@ def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: s
     return _core.laws.curved_sphere("force", terms, modulus, radius, overlap)
 
 
-@explained
-def contact_radius(radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Any:
+@law
+def contact_radius(radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Elementwise:
     """Returns the contact radius [m]; 0 without contact.
 
     Source: Agarwal and Gonzalez (2018), the inverse of eqs. 25, 29 and 33; all terms: eq. 19.
@@ -48,8 +46,8 @@ def contact_radius(radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf")
     return _core.laws.curved_sphere("contact_radius", terms, 1.0, radius, overlap)
 
 
-@explained
-def energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Any:
+@law
+def energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, terms: str = "inf") -> Elementwise:
     """Returns the stored elastic energy, the work of the wall since first touch [J].
 
     Source: Agarwal and Gonzalez (2018), the integral of eqs. 27, 31 and 35; all terms: of eq. 19.

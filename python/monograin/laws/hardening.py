@@ -8,17 +8,15 @@ Source: Shahin (2021), chapter 3.
 
 from __future__ import annotations
 
-from typing import Any
-
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._inputs import explained
+from .._law import Elementwise, law
 
 __all__ = ["contact_radius", "force", "mean_pressure", "work"]
 
 
-@explained
+@law
 def force(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -26,7 +24,7 @@ def force(
     displacement: ArrayLike,
     *,
     configuration: str = "simple",
-) -> Any:
+) -> Elementwise:
     """Returns the force of one moving wall [N].
 
     Source: Shahin (2021), eq. 3.45.
@@ -45,10 +43,10 @@ def force(
     return _core.laws.hardening("force", configuration, strength, exponent, radius, displacement)
 
 
-@explained
+@law
 def contact_radius(
     exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, configuration: str = "simple"
-) -> Any:
+) -> Elementwise:
     """Returns the contact radius at a moving wall [m].
 
     Source: Shahin (2021), eq. 3.47.
@@ -59,7 +57,7 @@ def contact_radius(
     return _core.laws.hardening("contact_radius", configuration, 1.0, exponent, radius, displacement)
 
 
-@explained
+@law
 def mean_pressure(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -67,7 +65,7 @@ def mean_pressure(
     displacement: ArrayLike,
     *,
     configuration: str = "simple",
-) -> Any:
+) -> Elementwise:
     """Returns the mean pressure under a moving wall [Pa].
 
     Source: Shahin (2021), eqs. 3.48 to 3.59, corrected.
@@ -78,7 +76,7 @@ def mean_pressure(
     return _core.laws.hardening("mean_pressure", configuration, strength, exponent, radius, displacement)
 
 
-@explained
+@law
 def work(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -86,7 +84,7 @@ def work(
     displacement: ArrayLike,
     *,
     configuration: str = "simple",
-) -> Any:
+) -> Elementwise:
     """Returns the work of one moving wall since first touch [J].
 
     Source: Shahin (2021), the integral of eq. 3.45.

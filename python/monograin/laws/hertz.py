@@ -5,18 +5,16 @@ Source: Hertz (1882). Valid while the contact radius is well below the sphere's;
 
 from __future__ import annotations
 
-from typing import Any
-
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._inputs import explained
+from .._law import Elementwise, law
 
 __all__ = ["composite_modulus", "contact_radius", "energy", "force"]
 
 
-@explained
-def composite_modulus(youngs_modulus: ArrayLike, poisson_ratio: ArrayLike) -> Any:
+@law
+def composite_modulus(youngs_modulus: ArrayLike, poisson_ratio: ArrayLike) -> Elementwise:
     """Returns the composite modulus E* = E/(1 - nu^2) [Pa] of an elastic body against a rigid one.
 
     Source: Zunker and Kamrin (2024), Part I, eq. 3 with a rigid second body.
@@ -28,8 +26,8 @@ def composite_modulus(youngs_modulus: ArrayLike, poisson_ratio: ArrayLike) -> An
     return _core.laws.composite_modulus(youngs_modulus, poisson_ratio)
 
 
-@explained
-def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
+@law
+def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Elementwise:
     """Returns the normal force F = (4/3) E* sqrt(R) delta^(3/2) [N], positive in compression.
 
     Source: Hertz (1882); Zunker and Kamrin (2024), Part I, eq. 25.
@@ -42,8 +40,8 @@ def force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
     return _core.laws.hertz_force(modulus, radius, overlap)
 
 
-@explained
-def contact_radius(radius: ArrayLike, overlap: ArrayLike) -> Any:
+@law
+def contact_radius(radius: ArrayLike, overlap: ArrayLike) -> Elementwise:
     """Returns the contact radius a = sqrt(R delta) [m]; 0 without contact.
 
     Source: Hertz (1882); Zunker and Kamrin (2024), Part I, eq. 23.
@@ -55,8 +53,8 @@ def contact_radius(radius: ArrayLike, overlap: ArrayLike) -> Any:
     return _core.laws.hertz_contact_radius(radius, overlap)
 
 
-@explained
-def energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
+@law
+def energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Elementwise:
     """Returns the stored elastic energy (2/5) F delta [J]; 0 without contact.
 
     Source: Hertz (1882); the integral of the force, Zunker and Kamrin (2024), Part I, eq. 25.

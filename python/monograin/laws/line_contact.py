@@ -8,18 +8,16 @@ Source: K. L. Johnson, Contact Mechanics (1985), section 5.6.
 
 from __future__ import annotations
 
-from typing import Any
-
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._inputs import explained
+from .._law import Elementwise, law
 
 __all__ = ["half_width", "strain", "stress"]
 
 
-@explained
-def strain(modulus: ArrayLike, stress: ArrayLike) -> Any:
+@law
+def strain(modulus: ArrayLike, stress: ArrayLike) -> Elementwise:
     """Returns the strain delta/D under a nominal stress.
 
     Source: Johnson (1985), section 5.6.
@@ -31,8 +29,8 @@ def strain(modulus: ArrayLike, stress: ArrayLike) -> Any:
     return _core.laws.line_contact_strain(modulus, stress)
 
 
-@explained
-def half_width(modulus: ArrayLike, stress: ArrayLike) -> Any:
+@law
+def half_width(modulus: ArrayLike, stress: ArrayLike) -> Elementwise:
     """Returns the half width of either contact over the radius, b/R = sqrt(8 S/(pi E*)).
 
     Source: Johnson (1985), section 5.6.
@@ -43,8 +41,8 @@ def half_width(modulus: ArrayLike, stress: ArrayLike) -> Any:
     return _core.laws.line_contact_half_width(modulus, stress)
 
 
-@explained
-def stress(modulus: ArrayLike, strain: ArrayLike) -> Any:
+@law
+def stress(modulus: ArrayLike, strain: ArrayLike) -> Elementwise:
     """Returns the nominal stress S [Pa] at a strain, the inverse of :func:`strain`.
 
     Source: Johnson (1985), section 5.6.

@@ -5,18 +5,19 @@ Source: Shahin (2021), eqs. 2.1 to 2.3 and 3.1 to 3.3.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
 from .. import _core
 from .._inputs import explained
+from .._law import Elementwise, law
 
 __all__ = ["PowerLaw", "power_law", "stress"]
 
 
-@explained
-def stress(yield_stress: ArrayLike, strength: ArrayLike, exponent: ArrayLike, plastic_strain: ArrayLike) -> Any:
+@law
+def stress(yield_stress: ArrayLike, strength: ArrayLike, exponent: ArrayLike, plastic_strain: ArrayLike) -> Elementwise:
     """Returns the flow stress [Pa].
 
     Source: Shahin (2021), eqs. 2.1 to 2.3.

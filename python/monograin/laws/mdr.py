@@ -7,13 +7,14 @@ Source: Zunker and Kamrin, Part I, doi:10.1016/j.jmps.2023.105492.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from .._inputs import explained, same
+from .._law import Elementwise, law
 
 __all__ = [
     "PeelCurve",
@@ -33,8 +34,8 @@ __all__ = [
 ]
 
 
-@explained
-def elastic_force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Any:
+@law
+def elastic_force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Elementwise:
     """Returns the force of an elastic contact without adhesion [N].
 
     Source: Zunker and Kamrin (2024), Part I, eqs. 23 and 25 (parabola), 30 and 31 (ellipse).
@@ -48,8 +49,8 @@ def elastic_force(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, 
     return _core.laws.mdr_elastic("force", profile, modulus, radius, overlap)
 
 
-@explained
-def elastic_contact_radius(radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Any:
+@law
+def elastic_contact_radius(radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Elementwise:
     """Returns the contact radius of an elastic contact without adhesion [m].
 
     Source: Zunker and Kamrin (2024), Part I, eqs. 23 and 29.
@@ -60,8 +61,8 @@ def elastic_contact_radius(radius: ArrayLike, overlap: ArrayLike, *, profile: st
     return _core.laws.mdr_elastic("contact_radius", profile, 1.0, radius, overlap)
 
 
-@explained
-def elastic_energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Any:
+@law
+def elastic_energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *, profile: str = "ellipse") -> Elementwise:
     """Returns the energy that an elastic contact without adhesion stores [J].
 
     Source: Zunker and Kamrin (2024), Part I, the integral of eqs. 25 and 31.
@@ -72,10 +73,10 @@ def elastic_energy(modulus: ArrayLike, radius: ArrayLike, overlap: ArrayLike, *,
     return _core.laws.mdr_elastic("energy", profile, modulus, radius, overlap)
 
 
-@explained
+@law
 def yield_overlap(
     youngs_modulus: ArrayLike, poisson_ratio: ArrayLike, yield_stress: ArrayLike, radius: ArrayLike
-) -> Any:
+) -> Elementwise:
     """Returns the overlap at which an elastic contact becomes fully plastic [m]; inf if it never does.
 
     Source: Zunker and Kamrin (2024), Part I, eqs. 40 and 41.
@@ -89,8 +90,8 @@ def yield_overlap(
     return _core.laws.mdr_yield_overlap(youngs_modulus, poisson_ratio, yield_stress, radius)
 
 
-@explained
-def plastic_mean_pressure(yield_stress: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Any:
+@law
+def plastic_mean_pressure(yield_stress: ArrayLike, radius: ArrayLike, overlap: ArrayLike) -> Elementwise:
     """Returns the mean pressure of a fully plastic contact, Y (1 + 1.75 exp(-4.4 delta/R)) [Pa].
 
     Source: Zunker and Kamrin (2024), Part I, eqs. 16, 21 and 28.
@@ -104,14 +105,14 @@ def plastic_mean_pressure(yield_stress: ArrayLike, radius: ArrayLike, overlap: A
     return _core.laws.mdr_plastic("mean_pressure", yield_stress, 0.3, yield_stress, radius, overlap)
 
 
-@explained
+@law
 def plastic_force(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
     yield_stress: ArrayLike,
     radius: ArrayLike,
     overlap: ArrayLike,
-) -> Any:
+) -> Elementwise:
     """Returns the force of a fully plastic contact at its largest overlap [N].
 
     The apparent radius is taken as constant since first yield. Below :func:`yield_overlap` the result is nan.
@@ -128,14 +129,14 @@ def plastic_force(
     return _core.laws.mdr_plastic("force", youngs_modulus, poisson_ratio, yield_stress, radius, overlap)
 
 
-@explained
+@law
 def plastic_contact_radius(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
     yield_stress: ArrayLike,
     radius: ArrayLike,
     overlap: ArrayLike,
-) -> Any:
+) -> Elementwise:
     """Returns the contact radius of a fully plastic contact at its largest overlap [m].
 
     Source: Zunker and Kamrin (2024), Part I, eqs. 36, 42 and 43.
@@ -146,7 +147,7 @@ def plastic_contact_radius(
     return _core.laws.mdr_plastic("contact_radius", youngs_modulus, poisson_ratio, yield_stress, radius, overlap)
 
 
-@explained
+@law
 def pull_off_force(
     modulus: ArrayLike,
     radius: ArrayLike,
@@ -154,7 +155,7 @@ def pull_off_force(
     *,
     control: str = "force",
     profile: str = "ellipse",
-) -> Any:
+) -> Elementwise:
     """Returns the pull-off force of an elastic adhesive contact [N], which is negative.
 
     Source: Zunker and Kamrin (2024), Part I, eqs. 11, 14 and 15.
@@ -170,7 +171,7 @@ def pull_off_force(
     return _core.laws.mdr_pull_off("force", profile, control, modulus, radius, surface_energy)
 
 
-@explained
+@law
 def pull_off_radius(
     modulus: ArrayLike,
     radius: ArrayLike,
@@ -178,7 +179,7 @@ def pull_off_radius(
     *,
     control: str = "force",
     profile: str = "ellipse",
-) -> Any:
+) -> Elementwise:
     """Returns the contact radius of an elastic adhesive contact at pull-off [m].
 
     Source: Zunker and Kamrin (2024), Part I, eq. 15.
@@ -242,8 +243,8 @@ def peel_curve(
     return PeelCurve(*_core.laws.mdr_peel_curve(radii, heights, modulus, surface_energy, control, points))
 
 
-@explained
-def power_ratio(exponent: ArrayLike) -> Any:
+@law
+def power_ratio(exponent: ArrayLike) -> Elementwise:
     """Returns kappa_n = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2): the one-dimensional image of r^n is kappa_n x^n.
 
     Source: Zunker and Kamrin (2024), Part I, eq. 4 for a power.
@@ -254,8 +255,8 @@ def power_ratio(exponent: ArrayLike) -> Any:
     return _core.laws.mdr_power_ratio(exponent)
 
 
-@explained
-def power_profile_1d(coefficient: ArrayLike, exponent: ArrayLike, x: ArrayLike) -> Any:
+@law
+def power_profile_1d(coefficient: ArrayLike, exponent: ArrayLike, x: ArrayLike) -> Elementwise:
     """Returns the one-dimensional image C kappa_n x^n of the profile C r^n, in the unit of the profile.
 
     Source: Zunker and Kamrin (2024), Part I, eq. 4.
@@ -268,8 +269,8 @@ def power_profile_1d(coefficient: ArrayLike, exponent: ArrayLike, x: ArrayLike) 
     return _core.laws.mdr_power_profile_1d(coefficient, exponent, x)
 
 
-@explained
-def power_profile_3d(coefficient: ArrayLike, exponent: ArrayLike, r: ArrayLike) -> Any:
+@law
+def power_profile_3d(coefficient: ArrayLike, exponent: ArrayLike, r: ArrayLike) -> Elementwise:
     """Returns the profile (C/kappa_n) r^n whose one-dimensional image is C x^n.
 
     Source: Zunker and Kamrin (2024), Part I, eq. 5.

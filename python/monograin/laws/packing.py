@@ -9,17 +9,15 @@ Source: Nezamabadi et al., doi:10.1007/s40571-021-00391-4.
 from __future__ import annotations
 
 import math
-from typing import Any
-
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._inputs import explained
+from .._law import Elementwise, law
 
 __all__ = ["coordination_number", "modulus", "plastic_fraction", "stress"]
 
 
-@explained
+@law
 def stress(
     packing_fraction: ArrayLike,
     youngs_modulus: ArrayLike,
@@ -27,7 +25,7 @@ def stress(
     *,
     yield_stress: ArrayLike = math.inf,
     hardening_modulus: ArrayLike = 0.0,
-) -> Any:
+) -> Elementwise:
     """Returns the compressive stress of the packing [Pa].
 
     Source: Nezamabadi et al. (2022), eqs. 6 and 10.
@@ -44,8 +42,8 @@ def stress(
     )
 
 
-@explained
-def modulus(packing_fraction: ArrayLike, youngs_modulus: ArrayLike, poisson_ratio: ArrayLike) -> Any:
+@law
+def modulus(packing_fraction: ArrayLike, youngs_modulus: ArrayLike, poisson_ratio: ArrayLike) -> Elementwise:
     """Returns the modulus M_eff of the packing [Pa].
 
     Source: Nezamabadi et al. (2022), eqs. 7 to 9.
@@ -56,14 +54,14 @@ def modulus(packing_fraction: ArrayLike, youngs_modulus: ArrayLike, poisson_rati
     return _core.laws.packing("modulus", packing_fraction, youngs_modulus, poisson_ratio, math.inf, 0.0)
 
 
-@explained
+@law
 def plastic_fraction(
     packing_fraction: ArrayLike,
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
     yield_stress: ArrayLike,
     hardening_modulus: ArrayLike = 0.0,
-) -> Any:
+) -> Elementwise:
     """Returns the share f_p of discs that have yielded.
 
     Source: Nezamabadi et al. (2022), eq. 11.
@@ -76,8 +74,8 @@ def plastic_fraction(
     )
 
 
-@explained
-def coordination_number(packing_fraction: ArrayLike) -> Any:
+@law
+def coordination_number(packing_fraction: ArrayLike) -> Elementwise:
     """Returns the mean number Z of contacts of a disc.
 
     Source: Nezamabadi et al. (2022), eq. 17.

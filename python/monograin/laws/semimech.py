@@ -8,17 +8,15 @@ Source: Shahin (2021), chapter 2.
 
 from __future__ import annotations
 
-from typing import Any
-
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._inputs import explained
+from .._law import Elementwise, law
 
 __all__ = ["contact_radius", "force", "mean_pressure", "work"]
 
 
-@explained
+@law
 def force(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -27,7 +25,7 @@ def force(
     displacement: ArrayLike,
     *,
     configuration: str = "simple",
-) -> Any:
+) -> Elementwise:
     """Returns the force of one moving wall [N].
 
     Source: Shahin (2021), eq. 2.12, with the contact radius of eq. 2.13 and the pressures of eqs. 2.15 to 2.47.
@@ -47,7 +45,7 @@ def force(
     return _core.laws.semimech("force", configuration, youngs_modulus, poisson_ratio, yield_stress, radius, displacement)
 
 
-@explained
+@law
 def contact_radius(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -56,7 +54,7 @@ def contact_radius(
     displacement: ArrayLike,
     *,
     configuration: str = "simple",
-) -> Any:
+) -> Elementwise:
     """Returns the contact radius at a moving wall [m].
 
     Source: Shahin (2021), eqs. 2.13 and 2.14, the exponent of the latter corrected.
@@ -69,7 +67,7 @@ def contact_radius(
     )
 
 
-@explained
+@law
 def mean_pressure(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -78,7 +76,7 @@ def mean_pressure(
     displacement: ArrayLike,
     *,
     configuration: str = "simple",
-) -> Any:
+) -> Elementwise:
     """Returns the mean pressure under a moving wall [Pa].
 
     Source: Shahin (2021), eqs. 2.15 to 2.47, eq. 2.24 corrected.
@@ -91,7 +89,7 @@ def mean_pressure(
     )
 
 
-@explained
+@law
 def work(
     youngs_modulus: ArrayLike,
     poisson_ratio: ArrayLike,
@@ -100,7 +98,7 @@ def work(
     displacement: ArrayLike,
     *,
     configuration: str = "simple",
-) -> Any:
+) -> Elementwise:
     """Returns the work of one moving wall since first touch [J].
 
     Source: Shahin (2021), the integral of eq. 2.12.

@@ -7,12 +7,10 @@ Source: Shahin (2021), section 2.2 and appendix B.
 
 from __future__ import annotations
 
-from typing import Any
-
 from numpy.typing import ArrayLike
 
 from .. import _core
-from .._inputs import explained
+from .._law import Elementwise, law
 
 __all__ = [
     "contact_radius",
@@ -27,10 +25,10 @@ __all__ = [
 ]
 
 
-@explained
+@law
 def force(
     strength: ArrayLike, exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, rule: str = "parabolic"
-) -> Any:
+) -> Elementwise:
     """Returns the force of a sphere at a rigid flat wall [N], as one half of a pair of equal spheres.
 
     Source: Shahin (2021), eqs. 2.4 and 2.8.
@@ -46,10 +44,10 @@ def force(
     return _core.laws.similarity("force", rule, strength, exponent, radius, displacement)
 
 
-@explained
+@law
 def contact_radius(
     exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, rule: str = "parabolic"
-) -> Any:
+) -> Elementwise:
     """Returns the contact radius of a sphere at a rigid flat wall [m].
 
     Source: Shahin (2021), eq. 2.5, or eq. B.24.
@@ -60,10 +58,10 @@ def contact_radius(
     return _core.laws.similarity("contact_radius", rule, 1.0, exponent, radius, displacement)
 
 
-@explained
+@law
 def mean_pressure(
     strength: ArrayLike, exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, rule: str = "parabolic"
-) -> Any:
+) -> Elementwise:
     """Returns the mean pressure k kappa (a/R)^mu of a sphere at a rigid flat wall [Pa].
 
     Source: Shahin (2021), eqs. 2.4 and 2.8.
@@ -74,10 +72,10 @@ def mean_pressure(
     return _core.laws.similarity("mean_pressure", rule, strength, exponent, radius, displacement)
 
 
-@explained
+@law
 def work(
     strength: ArrayLike, exponent: ArrayLike, radius: ArrayLike, displacement: ArrayLike, *, rule: str = "parabolic"
-) -> Any:
+) -> Elementwise:
     """Returns the work of the wall since first touch [J].
 
     Source: Shahin (2021), the integral of eq. 2.4.
@@ -88,8 +86,8 @@ def work(
     return _core.laws.similarity("work", rule, strength, exponent, radius, displacement)
 
 
-@explained
-def pair_strength(first: ArrayLike, second: ArrayLike, exponent: ArrayLike) -> Any:
+@law
+def pair_strength(first: ArrayLike, second: ArrayLike, exponent: ArrayLike) -> Elementwise:
     """Returns the strength of two materials in contact, (kappa_1^(-m) + kappa_2^(-m))^(-1/m) [Pa].
 
     Source: Shahin (2021), eq. 2.8.
@@ -101,7 +99,7 @@ def pair_strength(first: ArrayLike, second: ArrayLike, exponent: ArrayLike) -> A
     return _core.laws.similarity_strength(first, second, exponent)
 
 
-@explained
+@law
 def pair_force(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -110,7 +108,7 @@ def pair_force(
     approach: ArrayLike,
     *,
     rule: str = "parabolic",
-) -> Any:
+) -> Elementwise:
     """Returns the force of two spheres in contact [N].
 
     Source: Shahin (2021), eqs. 2.4, 2.7 and 2.8.
@@ -125,7 +123,7 @@ def pair_force(
     return _core.laws.similarity_pair("force", rule, strength, exponent, first_radius, second_radius, approach)
 
 
-@explained
+@law
 def pair_contact_radius(
     exponent: ArrayLike,
     first_radius: ArrayLike,
@@ -133,7 +131,7 @@ def pair_contact_radius(
     approach: ArrayLike,
     *,
     rule: str = "parabolic",
-) -> Any:
+) -> Elementwise:
     """Returns the contact radius of two spheres in contact [m].
 
     Source: Shahin (2021), eqs. 2.5 and 2.7, or eq. B.24.
@@ -144,7 +142,7 @@ def pair_contact_radius(
     return _core.laws.similarity_pair("contact_radius", rule, 1.0, exponent, first_radius, second_radius, approach)
 
 
-@explained
+@law
 def pair_approach(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -153,7 +151,7 @@ def pair_approach(
     force: ArrayLike,
     *,
     rule: str = "parabolic",
-) -> Any:
+) -> Elementwise:
     """Returns the approach of the centres under a force [m], the inverse of :func:`pair_force`.
 
     Source: Shahin (2021), eq. 2.4, solved for the approach.
@@ -165,7 +163,7 @@ def pair_approach(
     return _core.laws.similarity_pair("approach", rule, strength, exponent, first_radius, second_radius, force)
 
 
-@explained
+@law
 def pair_work(
     strength: ArrayLike,
     exponent: ArrayLike,
@@ -174,7 +172,7 @@ def pair_work(
     approach: ArrayLike,
     *,
     rule: str = "parabolic",
-) -> Any:
+) -> Elementwise:
     """Returns the work of two spheres in contact since first touch [J].
 
     Source: Shahin (2021), the integral of eq. 2.4.
