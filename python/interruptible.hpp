@@ -51,14 +51,15 @@ class SignalWatch {
   std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + k_between_looks;
 };
 
-/// Makes a run in this thread, without the interpreter's lock, and ends it where a signal's handler raises.
-/// @param make  function of RunOptions that returns the run
+/// Runs a scenario in this thread, without the interpreter's lock, and ends the run where a signal's handler raises.
+/// @param make  function of RunOptions that runs the scenario
+/// @return what `make` returns
 /// @throws py::error_already_set with what the handler has raised
 template <class Make>
-RunResult run_watched(Make&& make) {
+auto run_watched(Make&& make) {
   SignalWatch watch;
   // Taking the lock back may end the thread, which must not find the result half handed over.
-  std::optional<RunResult> result;
+  std::optional<decltype(make(RunOptions{}))> result;
   try {
     const Unlocked unlocked;
     result.emplace(make(RunOptions{.stop = [&watch] { return watch.has_raised(); }}));

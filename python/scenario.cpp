@@ -10,6 +10,7 @@
 
 #include "api/checked.hpp"
 #include "bindings.hpp"
+#include "history/profile.hpp"
 #include "history/run.hpp"
 #include "history/staged_folder.hpp"
 #include "interruptible.hpp"
@@ -18,7 +19,6 @@
 #include "scenario/file_keys.hpp"
 #include "scenario/text_file.hpp"
 #include "scene/scene.hpp"
-#include "study/atlas/profile.hpp"
 
 namespace monograin::python {
 namespace {
@@ -98,8 +98,9 @@ void save_texts(const std::string& folder, const std::map<std::string, std::stri
 }
 
 History profile_of(const SoundScenario& scenario, double time) {
-  const Unlocked unlocked;
-  return history_of(contact_profiles(scenario.checked, time));
+  return run_watched([&](const RunOptions& options) {
+    return history_of(contact_profiles(scenario.checked, time, interruptible(options.stop)));
+  });
 }
 
 }  // namespace

@@ -15,6 +15,12 @@ namespace monograin {
 
 struct Run;
 
+struct RunOptions {
+  /// Called now and then during a run, in the thread of the call. Returning true ends the run by RunInterrupted. An
+  /// empty function never ends it.
+  std::function<bool()> stop{};
+};
+
 /// Result of run(): how the run ended, and its curves up to that point.
 class RunResult {
  public:
@@ -35,14 +41,18 @@ class RunResult {
   /// @throws std::runtime_error that names the file or folder that cannot be written
   void save(const std::filesystem::path& folder) const;
 
+  /// Pressure and surface under the contacts at one instant. Runs the scenario again up to that instant.
+  /// @param time  [s], within the run
+  /// @return columns `class` (words), `radius` [m], `pressure` [Pa], `displacement` [m] of the surface and
+  ///         `relaxed_height` [m] of the unloaded surface: a row for each point of each class of contacts that is
+  ///         closed
+  /// @throws std::runtime_error if the model has no profile, the run ends before the instant, or no contact is closed
+  ///         then; the message says which
+  /// @throws RunInterrupted if the options end the run
+  [[nodiscard]] History profile(double time, const RunOptions& options = {}) const;
+
  private:
   std::shared_ptr<const Run> run_;
-};
-
-struct RunOptions {
-  /// Called now and then during a run, in the thread of the call. Returning true ends the run by RunInterrupted. An
-  /// empty function never ends it.
-  std::function<bool()> stop{};
 };
 
 /// Runs a scenario.

@@ -1,6 +1,7 @@
 #include "monograin/run.hpp"
 
 #include "api/checked.hpp"
+#include "history/profile.hpp"
 #include "history/run.hpp"
 #include "history/run_files.hpp"
 
@@ -30,6 +31,11 @@ void RunResult::save(const std::filesystem::path& folder) const {
   StagedFolder staged(folder);
   Run run = *run_;  // a copy, because write_run() notes the time of writing in the run
   write_run(run, staged);
+}
+
+History RunResult::profile(double time, const RunOptions& options) const {
+  Table profiles = contact_profiles(run_->scenario, time, interruptible(options.stop));
+  return History(std::make_shared<const Table>(std::move(profiles)));
 }
 
 RunResult run(const Scenario& scenario, const RunOptions& options) {

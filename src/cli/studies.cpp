@@ -14,6 +14,7 @@
 #include "figure/figure.hpp"
 #include "figure/page.hpp"
 #include "history/compare.hpp"
+#include "history/profile.hpp"
 #include "history/run_files.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"

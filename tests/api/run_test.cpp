@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <span>
 #include <sstream>
@@ -71,6 +73,40 @@ TEST(Run, EndsWhenItIsAskedToAndIsTheSameOtherwise) {
       EXPECT_THROW(static_cast<void>(run(scenario, {.stop = [] { return true; }})), RunInterrupted) << name;
     }
   }
+}
+
+TEST(RunResult, HasTheProfilesUnderItsContactsAtAnInstant) {
+  const RunResult result = run(ready_scenario("die.toml"));
+  const History profile = result.profile(0.5);
+  const std::vector<std::string> columns{"class", "radius", "pressure", "displacement", "relaxed_height"};
+  EXPECT_TRUE(std::ranges::equal(profile.names(), columns));
+  EXPECT_EQ(profile.column("pressure").unit, "Pa");
+  const std::vector<std::string_view> classes = profile.words("class");
+  double force = 0.0;
+  for (std::size_t k = 0; k + 1 < classes.size() && classes[k + 1] == "axial"; ++k) {
+    const double inner = profile["radius"][k];
+    const double outer = profile["radius"][k + 1];
+    const double mean = 0.5 * (profile["pressure"][k] + profile["pressure"][k + 1]);
+    force += std::numbers::pi * (outer * outer - inner * inner) * mean;
+  }
+  const auto time = result.history["time"];
+  const auto row = std::ranges::min_element(time, {}, [](double t) { return std::abs(t - 0.5); }) - time.begin();
+  EXPECT_NEAR(force / result.history["axial.force"][static_cast<std::size_t>(row)], 1.0, 1e-2);
+}
+
+TEST(RunResult, SaysWhyThereIsNoProfileAndEndsWhenItIsAskedTo) {
+  const auto problem = [](const std::string& scenario, double time) -> std::string {
+    try {
+      static_cast<void>(run(ready_scenario(scenario)).profile(time));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(problem("die.toml", 99.0), "there is no profile at t = 99 s: the run does not come to that instant");
+  EXPECT_NE(problem("packing.toml", 0.5).find("model 'packing' has no profile"), std::string::npos);
+  const RunResult result = run(ready_scenario("die.toml"));
+  EXPECT_THROW(static_cast<void>(result.profile(0.5, {.stop = [] { return true; }})), RunInterrupted);
 }
 
 TEST(History, ThatWasMovedFromStaysAsItWas) {

@@ -15,11 +15,11 @@
 #include <utility>
 
 #include "catalogue.hpp"
+#include "history/profile.hpp"
 #include "history/run.hpp"
 #include "scenario/words.hpp"
 #include "study/atlas/adhesion_panels.hpp"
 #include "study/atlas/definition.hpp"
-#include "study/atlas/profile.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
