@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "cel/contact_law.hpp"
 #include "compressible/contact_law.hpp"
 #include "compressible/regressions.hpp"
 #include "elastic/hertz.hpp"
@@ -184,6 +186,86 @@ py::tuple ludwik_power_law(double youngs_modulus, double yield_stress, double st
       plastic::fit_hollomon(ludwik_material(youngs_modulus, yield_stress, strength, exponent), largest_strain,
                             word<Fit>(fit, {{"both", Fit::both}, {"exponent", Fit::exponent}}));
   return py::make_tuple(found.strength, found.exponent, found.residual);
+}
+
+// --- one contact of model cel, on an undeformed core
+
+/// Quantity of a contact on a dent, in SI units.
+/// @param quantity  overlap (plastic indentation and local elastic displacement), force, contact_radius or
+/// mean_pressure
+double cel_quantity(const std::string& quantity, const cel::Dent& dent, const cel::Contact& contact,
+                    double youngs_modulus, double radius) {
+  if (quantity == "overlap") return (dent.h + contact.u) * radius;
+  if (quantity == "force") return contact.F * youngs_modulus * radius * radius;
+  if (quantity == "contact_radius") return std::sqrt(contact.area) * radius;
+  return contact.F * youngs_modulus / (std::numbers::pi * contact.area);
+}
+
+/// Makes a function of (E, nu, Y, R0, numbers...) from a function of (cel::Material, E, R0, numbers...). It refuses
+/// inadmissible parameters, and is NaN if one of its arguments is.
+template <class Function>
+auto with_cel_material(Function function) {
+  return [function, last = LastMade<cel::Material, 3>()](double e, double nu, double y, double r,
+                                                         auto... numbers) mutable {
+    require_positive({{"youngs_modulus", e}, {"yield_stress", y}, {"radius", r}});
+    require_poisson_ratio(nu);
+    if (((std::isnan(e) || std::isnan(nu) || std::isnan(y) || std::isnan(r)) || ... || std::isnan(numbers)))
+      return k_nan;
+    const cel::Material& material = last.get({e, nu, y}, [&] { return cel::Material(y / e, nu); });
+    return function(material, e, r, numbers...);
+  };
+}
+
+/// Dent of a contact with that largest radius over R0: a fresh surface up to yield.
+cel::Dent cel_dent(const cel::Material& material, double largest) {
+  return cel::dent_of(material, std::max(largest, material.a_Y));
+}
+
+/// Onset of yield, or the plastic indentation below a dent.
+/// @param largest  largest contact radius [m]; it does not matter at yield
+Elementwise cel_dent_quantity(const std::string& quantity, const Numbers& youngs_modulus, const Numbers& poisson_ratio,
+                              const Numbers& yield_stress, const Numbers& radius, const Numbers& largest) {
+  return Elementwise(with_cel_material([=](const cel::Material& material, double, double r, double a) {
+                       if (quantity == "yield_radius") return material.a_Y * r;
+                       if (quantity == "yield_overlap") return material.a_Y * material.a_Y * r;
+                       return a <= r ? cel_dent(material, a / r).h * r : k_nan;
+                     }),
+                     youngs_modulus, poisson_ratio, yield_stress, radius, largest);
+}
+
+/// First loading up to a contact radius.
+/// @param quantity  overlap, force or mean_pressure
+Elementwise cel_loading(const std::string& quantity, const Numbers& youngs_modulus, const Numbers& poisson_ratio,
+                        const Numbers& yield_stress, const Numbers& radius, const Numbers& contact_radius) {
+  return Elementwise(with_cel_material([=](const cel::Material& material, double e, double r, double a) {
+                       if (a <= 0.0) return 0.0;
+                       if (a > r) return k_nan;
+                       const double zeta = a / r;
+                       const cel::Dent dent = cel_dent(material, zeta);
+                       // Before yield the contact is Hertz's, u = a^2; afterwards its force is the limit.
+                       const double limit = cel::contact_at(material, dent, 1.0, 1.0, 0.0).H;
+                       const cel::Contact contact = zeta < material.a_Y
+                                                        ? cel::contact_at(material, dent, 1.0, 1.0, zeta * zeta)
+                                                        : cel::contact_under(material, dent, 1.0, 1.0, limit);
+                       return cel_quantity(quantity, dent, contact, e, r);
+                     }),
+                     youngs_modulus, poisson_ratio, yield_stress, radius, contact_radius);
+}
+
+/// A contact below its limit, on the dent of its largest radius; NaN beyond the limit, where the dent would grow.
+/// @param quantity  force or contact_radius
+Elementwise cel_unloading(const std::string& quantity, const Numbers& youngs_modulus, const Numbers& poisson_ratio,
+                          const Numbers& yield_stress, const Numbers& radius, const Numbers& largest,
+                          const Numbers& overlap) {
+  return Elementwise(with_cel_material([=](const cel::Material& material, double e, double r, double a, double delta) {
+                       if (a > r) return k_nan;
+                       const cel::Dent dent = cel_dent(material, a / r);
+                       const cel::Contact contact = cel::contact_at(material, dent, 1.0, 1.0, delta / r - dent.h);
+                       const double limit = cel::contact_under(material, dent, 1.0, 1.0, contact.H).u + dent.h;
+                       if (delta > limit * r * (1.0 + k_same_value)) return k_nan;
+                       return cel_quantity(quantity, dent, contact, e, r);
+                     }),
+                     youngs_modulus, poisson_ratio, yield_stress, radius, largest, overlap);
 }
 
 // --- elastic contacts
@@ -382,6 +464,9 @@ void add_mdr(py::module_& laws) {
 }
 
 void add_plastic(py::module_& laws) {
+  laws.def("cel_dent", &cel_dent_quantity);
+  laws.def("cel_loading", &cel_loading);
+  laws.def("cel_unloading", &cel_unloading);
   laws.def("semimech", &semimech);
   laws.def("hardening", &hardening);
   laws.def("similarity", &similarity);

@@ -200,6 +200,37 @@ class laws:
     @staticmethod
     def mdr_power_profile_3d(coefficient: ArrayLike, exponent: ArrayLike, r: ArrayLike, /) -> Elementwise: ...
     @staticmethod
+    def cel_dent(
+        quantity: str,
+        youngs_modulus: ArrayLike,
+        poisson_ratio: ArrayLike,
+        yield_stress: ArrayLike,
+        radius: ArrayLike,
+        largest: ArrayLike,
+        /,
+    ) -> Elementwise: ...
+    @staticmethod
+    def cel_loading(
+        quantity: str,
+        youngs_modulus: ArrayLike,
+        poisson_ratio: ArrayLike,
+        yield_stress: ArrayLike,
+        radius: ArrayLike,
+        contact_radius: ArrayLike,
+        /,
+    ) -> Elementwise: ...
+    @staticmethod
+    def cel_unloading(
+        quantity: str,
+        youngs_modulus: ArrayLike,
+        poisson_ratio: ArrayLike,
+        yield_stress: ArrayLike,
+        radius: ArrayLike,
+        largest: ArrayLike,
+        overlap: ArrayLike,
+        /,
+    ) -> Elementwise: ...
+    @staticmethod
     def semimech(
         quantity: str,
         configuration: str,

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import concurrent.futures
+import csv
 import inspect
 import math
+import pathlib
 import subprocess
 import sys
 import textwrap
@@ -18,6 +20,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import monograin as mg
 
 laws = mg.laws
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 ROUNDING = 1e-14
 
 
@@ -406,6 +409,107 @@ def test_laws_are_what_runs_compute(name, force):
     expected = force(_numbers(scenario), radius, d[:first])
     assert np.isfinite(expected).all()
     assert_allclose(run["axial.force"][:first], expected, rtol=1e-8, atol=1e-9 * np.nanmax(expected))
+
+
+CEL = (1e9, 0.3, 2e7, 0.01)  # E, nu, Y, R0
+# Influence of the forces at two opposite walls on either of them, times E R0: 4000 terms of the series of the sphere.
+CEL_SPHERE = 0.456150299556335 - 0.224018049811986
+
+
+def test_a_contact_of_cel_has_the_values_of_its_closed_forms():
+    # Computed independently of this program, with R0 = E = 1.
+    lines = (ROOT / "tests" / "models" / "cel" / "reference" / "point_values.csv").read_text().splitlines()
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    ratio, zeta, h, p, limit, u = (
+        np.array([float(row[name]) for row in rows]) for name in ("E_over_Y", "zeta", "h", "p_over_Y", "H", "u_H")
+    )
+    material = (1.0, 0.3, 1.0 / ratio, 1.0)
+    assert len(rows) == 20
+    assert_allclose(laws.cel.indentation(*material, zeta), h, rtol=1e-9)
+    assert_allclose(laws.cel.loading_force(*material, zeta), limit, rtol=1e-12)
+    assert_allclose(laws.cel.loading_overlap(*material, zeta), h + u, rtol=1e-12)
+    assert_allclose(laws.cel.mean_pressure(*material, zeta), p / ratio, rtol=1e-12)
+    assert_allclose(laws.cel.unloading_force(*material, zeta, h + u), limit, rtol=1e-9)
+
+
+def test_a_contact_of_cel_is_hertzs_up_to_yield():
+    overlap = np.linspace(0.0, laws.cel.yield_overlap(*CEL), 9)
+    modulus = laws.hertz.composite_modulus(*CEL[:2])
+    radius = laws.hertz.contact_radius(CEL[3], overlap)
+    assert radius[-1] == pytest.approx(laws.cel.yield_radius(*CEL), rel=ROUNDING)
+    expected = laws.hertz.force(modulus, CEL[3], overlap)
+    assert_allclose(laws.cel.loading_overlap(*CEL, radius), overlap, rtol=1e-13)
+    assert_allclose(laws.cel.loading_force(*CEL, radius), expected, rtol=1e-13)
+    assert_allclose(laws.cel.unloading_force(*CEL, radius[-1], overlap), expected, rtol=1e-13)
+    assert_allclose(laws.cel.unloading_contact_radius(*CEL, radius[-1], overlap), radius, rtol=1e-13)
+    assert laws.cel.indentation(*CEL, radius[-1]) == pytest.approx(0.0, abs=1e-20)
+
+
+def test_a_dent_of_cel_unloads_from_the_end_of_loading_to_its_indentation():
+    largest = np.array([[0.1], [0.3], [0.8]]) * CEL[3]
+    opens, ends = laws.cel.indentation(*CEL, largest), laws.cel.loading_overlap(*CEL, largest)
+    overlap = opens + np.linspace(0.0, 1.0, 11) * (ends - opens)
+    force = laws.cel.unloading_force(*CEL, largest, overlap)
+    assert_allclose(force[:, :1], 0.0, atol=1e-9 * force.max())
+    assert_allclose(force[:, -1:], laws.cel.loading_force(*CEL, largest), rtol=1e-10)
+    # The stiffness of a frictionless contact is that of a flat punch of its radius.
+    middle, step = overlap[:, 1:-1], 1e-6 * (ends - opens)
+    rise = laws.cel.unloading_force(*CEL, largest, middle + step) - laws.cel.unloading_force(*CEL, largest, middle - step)
+    stiffness = 2.0 * laws.hertz.composite_modulus(*CEL[:2]) * laws.cel.unloading_contact_radius(*CEL, largest, middle)
+    assert_allclose(rise / (2.0 * step), stiffness, rtol=1e-6)
+
+
+def test_a_contact_of_cel_is_refused_or_nan_beyond_its_domain():
+    radius = CEL[3]
+    assert_array_equal(np.isnan(laws.cel.loading_force(*CEL, [-1.0, 0.0, radius, 1.1 * radius, np.nan])), [0, 0, 0, 1, 1])
+    ends = laws.cel.loading_overlap(*CEL, 0.3 * radius)
+    force = laws.cel.unloading_force(*CEL, 0.3 * radius, [0.0, ends, 1.001 * ends, np.nan])
+    assert_array_equal(np.isnan(force), [0, 0, 1, 1])
+    assert force[0] == 0.0
+    assert math.isnan(laws.cel.indentation(math.nan, *CEL[1:], 0.1 * radius))
+    with pytest.raises(ValueError, match="yield_stress = 0: expected above 0"):
+        laws.cel.yield_radius(1e9, 0.3, 0.0, 0.01)
+    with pytest.raises(ValueError, match="poisson_ratio = 0.6"):
+        laws.cel.mean_pressure(1e9, 0.6, 2e7, 0.01, 1e-3)
+
+
+def test_a_contact_of_cel_is_that_of_a_run_at_small_overlaps():
+    modulus, ratio, yield_stress, radius = CEL
+    run = mg.Scenario(
+        {
+            "model": "cel",
+            "particle": {"radius": radius},
+            "material": {"youngs_modulus": modulus, "poisson_ratio": ratio, "yield_stress": yield_stress},
+            "loading": {
+                "configuration": "simple",
+                "steps": [
+                    {"displacement": "0.02 R0", "duration": "1 s"},
+                    {"displacement": "0 R0", "duration": "1 s", "until": {"force": "0 N"}},
+                ],
+            },
+        }
+    ).run()
+    inside = (run["axial.force"] > 0.0) & (run["time"] > 0.0)
+    a, force, displacement, regime = (
+        run[f"axial.{name}"][inside] for name in ("contact_radius", "force", "displacement", "regime")
+    )
+    # The elastic sphere moves under both forces.
+    overlap = displacement + CEL_SPHERE * force / (modulus * radius)
+    # Only the core, which flows from the yield of the contact on, differs from this contact.
+    for name, of_force, of_overlap in (("elastic", 1e-12, 1e-9), ("plastic", 2e-4, 1e-3)):
+        now = regime == name
+        assert now.sum() > 5, name
+        assert_allclose(laws.cel.loading_force(*CEL, a[now]), force[now], rtol=of_force)
+        assert_allclose(laws.cel.mean_pressure(*CEL, a[now]), run["axial.pressure"][inside][now], rtol=of_force)
+        assert_allclose(laws.cel.loading_overlap(*CEL, a[now]), overlap[now], rtol=of_overlap)
+    now = regime == "unloaded"
+    assert now.sum() > 5
+    of_dent = np.linspace(0.0, laws.cel.loading_overlap(*CEL, a.max()), 20_001)
+    forces = laws.cel.unloading_force(*CEL, a.max(), of_dent)
+    radii = laws.cel.unloading_contact_radius(*CEL, a.max(), of_dent)
+    assert_allclose(np.interp(force[now], forces, radii), a[now], rtol=1e-4)
+    assert_allclose(np.interp(force[now], forces, of_dent), overlap[now], rtol=1e-3)
+    assert laws.cel.indentation(*CEL, a.max()) == pytest.approx(run["axial.displacement"][-1], rel=1e-3)
 
 
 def _numbers(scenario: mg.Scenario) -> dict:

@@ -12,6 +12,7 @@ one of the arguments.
 - :mod:`monograin.laws.curved_sphere`: an elastic sphere at a rigid wall, with the curvature of the sphere's profile
 - :mod:`monograin.laws.line_contact`: an elastic cylinder between two walls
 - :mod:`monograin.laws.mdr`: elastic, adhesive and fully plastic contacts of the method of dimensionality reduction
+- :mod:`monograin.laws.cel`: one contact of an elastic-perfectly plastic sphere, with unloading
 - :mod:`monograin.laws.similarity`: a rigid-plastic sphere that hardens by a power law, small contacts
 - :mod:`monograin.laws.semimech`: an elastic-ideally plastic sphere between walls, up to a filled die
 - :mod:`monograin.laws.hardening`: a rigid-plastic sphere that hardens by a power law, up to a filled die
@@ -21,6 +22,7 @@ one of the arguments.
 """
 
 from . import (
+    cel,
     compressible,
     curved_sphere,
     hardening,
@@ -34,6 +36,7 @@ from . import (
 )
 
 __all__ = [
+    "cel",
     "compressible",
     "curved_sphere",
     "hardening",
