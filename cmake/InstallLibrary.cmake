@@ -1,10 +1,10 @@
-# Installs the library, its headers, and what find_package and pkg-config read.
+# Installs the libraries, their headers, and what find_package and pkg-config read.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/monograin")
 target_include_directories(monograin PUBLIC "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
-install(TARGETS monograin EXPORT monograin-targets)
+install(TARGETS ${installed_libraries} EXPORT monograin-targets)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/monograin" "${PROJECT_BINARY_DIR}/include/monograin"
         DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" FILES_MATCHING PATTERN "*.hpp")
 

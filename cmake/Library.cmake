@@ -1,16 +1,31 @@
-# The library that others link, monograin::monograin: the rooms that the public interface stands on.
+# The libraries that others link: monograin::monograin, the rooms that the public interface stands on, and
+# monograin::studies, those of studies of many runs.
 
-set(library_rooms numerics models scenario scene engine history formula api)
-set(library_objects)
-set(library_dependencies)
-foreach(room IN LISTS library_rooms)
-  list(APPEND library_objects $<TARGET_OBJECTS:monograin_${room}>)
-  get_target_property(dependencies monograin_${room} MONOGRAIN_LIBRARIES)
-  # The objects are compiled already: nothing is left to link of headers that have no package.
-  list(FILTER dependencies EXCLUDE REGEX "^monograin_")
-  list(APPEND library_dependencies ${dependencies})
-endforeach()
-list(REMOVE_DUPLICATES library_dependencies)
+# monograin_library(name ROOMS room...): a library of the objects of rooms, with what these stand on.
+function(monograin_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 LIBRARY "" "" "ROOMS")
+  set(objects)
+  set(dependencies)
+  foreach(room IN LISTS LIBRARY_ROOMS)
+    list(APPEND objects $<TARGET_OBJECTS:monograin_${room}>)
+    get_target_property(of_room monograin_${room} MONOGRAIN_LIBRARIES)
+    # The objects are compiled already: nothing is left to link of headers that have no package.
+    list(FILTER of_room EXCLUDE REGEX "^monograin_")
+    list(APPEND dependencies ${of_room})
+  endforeach()
+  list(REMOVE_DUPLICATES dependencies)
+  add_library(${name} ${objects})
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_link_libraries(${name} PRIVATE ${dependencies})
+  if(BUILD_SHARED_LIBS AND NOT MONOGRAIN_SANITIZE)
+    target_link_options(${name} PRIVATE -Wl,--no-undefined)
+  endif()
+  # The program of the same name stands in the build folder itself.
+  set_target_properties(${name} PROPERTIES VERSION "${PROJECT_VERSION}"
+                                           SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+                                           LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib"
+                                           ARCHIVE_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+endfunction()
 
 # Headers of models, as others include them: <monograin/laws/elastic/hertz.hpp>. They are those of the tree, which name
 # each other from the folder models/.
@@ -29,18 +44,20 @@ foreach(header IN LISTS staged_headers)
   file(REMOVE "${law_headers}/${header}")
 endforeach()
 
-add_library(monograin ${library_objects})
+monograin_library(monograin ROOMS numerics models scenario scene engine history formula api)
 add_library(monograin::monograin ALIAS monograin)
-target_compile_features(monograin PUBLIC cxx_std_20)
 target_include_directories(monograin PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
                                             "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>")
 # Headers of laws include Eigen's, and Boost's.
-target_link_libraries(monograin PUBLIC Eigen3::Eigen Boost::headers PRIVATE ${library_dependencies})
-if(BUILD_SHARED_LIBS AND NOT MONOGRAIN_SANITIZE)
-  target_link_options(monograin PRIVATE -Wl,--no-undefined)
+target_link_libraries(monograin PUBLIC Eigen3::Eigen Boost::headers)
+
+set(installed_libraries monograin)
+if(MONOGRAIN_HAS_STUDIES)
+  monograin_library(monograin_studies ROOMS figure sweep calibrate identify api_study)
+  add_library(monograin::studies ALIAS monograin_studies)
+  # Studies read tables of TOML, as the room scenario does.
+  target_link_libraries(monograin_studies PUBLIC monograin PRIVATE tomlplusplus::tomlplusplus)
+  # Both libraries are installed into one folder.
+  set_target_properties(monograin_studies PROPERTIES EXPORT_NAME studies INSTALL_RPATH "$ORIGIN")
+  list(APPEND installed_libraries monograin_studies)
 endif()
-set_target_properties(monograin PROPERTIES VERSION "${PROJECT_VERSION}"
-                                           SOVERSION "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
-# The program of the same name stands in the build folder itself.
-set_target_properties(monograin PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib"
-                                           ARCHIVE_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")

@@ -42,7 +42,7 @@ nitpick_ignore_regex = [
 ]
 
 # Types of the headers that are only declared: their definitions are not part of the interface.
-nitpick_ignore = [("cpp:identifier", "monograin")] + [
+nitpick_ignore = [("cpp:identifier", "monograin"), ("cpp:identifier", "monograin::study")] + [
     ("cpp:identifier", name)
     for header in (ROOT / "include").rglob("*.hpp")
     for name in re.findall(r"^(?:class|struct) (\w+);", header.read_text(encoding="utf-8"), re.MULTILINE)

@@ -40,7 +40,7 @@ TABLES = DOCS / "tables"
 FIGURES = ("die", "uniaxial", "adhesion", "snap-off", "force", "free-centre", "late-wall", "cycles")
 
 # Programs of examples/cpp that pages show.
-CPP_EXAMPLES = ("run_scenario", "own_law", "sweep")
+CPP_EXAMPLES = ("run_scenario", "own_law", "sweep", "calibrate")
 
 # The dimension of a list of units, by the SI unit in it.
 DIMENSIONS = {
@@ -853,21 +853,27 @@ def declarations_of(xml, header):
         fail(f"doxygen has not read {header}")
     brief = " ".join("".join(file.find("briefdescription").itertext()).split())
     parts = [f"{brief}\n\n"] if brief else []
+    # Namespaces by the file of their description.
+    namespaces = {name.text: compound.get("refid") for compound in index.iter("compound")
+                  for name in [compound.find("name")] if compound.get("kind") == "namespace"}
     for inner in file.findall("innerclass"):
-        # A mere declaration: the definition stands in another file, or nowhere.
-        if inner.get("refid") in kinds and inner.text.count("::") == 1:
+        # A mere declaration: the definition stands in another file, or nowhere. A class within a class is a member.
+        if inner.get("refid") in kinds and inner.text.rpartition("::")[0] in namespaces:
             own = ElementTree.parse(xml / f"{inner.get('refid')}.xml").find("compounddef")
             if own.find("location").get("bodyfile") == header or own.find("location").get("file") == header:
                 kind = kinds[inner.get("refid")]
                 parts.append(f"```{{doxygen{kind}}} {inner.text}\n:members:\n:undoc-members:\n```\n\n")
-    namespace = ElementTree.parse(xml / "namespacemonograin.xml").find("compounddef")
-    members = [member for member in namespace.iter("memberdef") if member.find("location").get("file") == header]
-    functions = [member.findtext("name") for member in namespace.iter("memberdef") if member.get("kind") == "function"]
-    for member in members:
-        kind, name = member.get("kind"), member.findtext("name")
-        arguments = member.findtext("argsstring") if kind == "function" and functions.count(name) > 1 else ""
-        arguments = re.sub(r"\)[^)]*$", ")", arguments)
-        parts.append(f"```{{doxygen{kind}}} monograin::{name}{arguments}\n```\n\n")
+    for scope, refid in namespaces.items():
+        namespace = ElementTree.parse(xml / f"{refid}.xml").find("compounddef")
+        members = list(namespace.iter("memberdef"))
+        functions = [member.findtext("name") for member in members if member.get("kind") == "function"]
+        for member in members:
+            if member.find("location").get("file") != header:
+                continue
+            kind, name = member.get("kind"), member.findtext("name")
+            arguments = member.findtext("argsstring") if kind == "function" and functions.count(name) > 1 else ""
+            arguments = re.sub(r"\)[^)]*$", ")", arguments)
+            parts.append(f"```{{doxygen{kind}}} {scope}::{name}{arguments}\n```\n\n")
     return parts
 
 

@@ -70,18 +70,15 @@ auto run_watched(Make&& make) {
   return *std::move(result);
 }
 
-/// Thrown by work that was asked to stop; nobody sees it but run_interruptibly().
-struct Stopped {};
-
-/// Runs work in a thread of its own, without the interpreter's lock, and hands on what it returns or throws. A signal
-/// whose handler raises sets `stop`; work looks at it between its pieces and throws Stopped, or comes to its end.
-/// @param work  (const std::atomic<bool>& stop) -> result
+/// Runs work in a thread of its own, without the interpreter's lock, and hands on what it returns or throws.
+/// @param work  (const std::function<bool()>& stop) -> result. It asks `stop` between its pieces, and ends by an
+///              exception once that is true: a signal's handler has raised.
 /// @throws py::error_already_set with what the handler has raised, once the work has ended
 template <class Work>
 auto run_interruptibly(Work&& work) {
   std::atomic<bool> stop{false};
   SignalWatch watch;
-  auto result = std::async(std::launch::async, [&] { return work(static_cast<const std::atomic<bool>&>(stop)); });
+  auto result = std::async(std::launch::async, [&] { return work([&stop] { return stop.load(); }); });
   {
     const Unlocked unlocked;
     while (!stop && result.wait_for(SignalWatch::k_between_looks) != std::future_status::ready) {

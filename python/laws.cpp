@@ -369,9 +369,8 @@ py::tuple mdr_peel_curve(const Numbers& radii, const Numbers& heights, double co
   require_positive({{"modulus", composite_modulus}, {"surface_energy", surface_energy}});
   const Control controlled = control_named(control);
   const mdr::RelaxedProfile profile(list_of(radii), list_of(heights));
-  const std::vector<mdr::PeelState> states = run_interruptibly([&](const std::atomic<bool>&) {
-    return mdr::peel_curve(profile, composite_modulus, surface_energy, controlled, count);
-  });
+  const std::vector<mdr::PeelState> states = run_interruptibly(
+      [&](const auto&) { return mdr::peel_curve(profile, composite_modulus, surface_energy, controlled, count); });
   const auto column = [&](double mdr::PeelState::*value) {
     Array array(static_cast<py::ssize_t>(states.size()));
     std::ranges::transform(states, array.mutable_data(), value);

@@ -50,8 +50,8 @@ def sweep(
         RuntimeError: if the folder holds other files or cannot be written.
         KeyboardInterrupt: on Ctrl-C. Complete runs stay in the folder, and the next call does the others.
     """
-    where, missing = _core.sweep(*_named_text(source, "sweep.toml"), _folder(folder), threads, *shard)
-    return Table.read_csv(os.path.join(where, "results.csv")) if missing == 0 else None
+    results = _core.sweep(*_named_text(source, "sweep.toml"), _folder(folder), threads, *shard)
+    return None if results is None else Table(results)
 
 
 @explained
@@ -78,12 +78,10 @@ def sensitivity(source: Source, folder: Optional[Path] = None, *, threads: int =
         ValueError: for another design, or a confidence outside of (0, 1).
         RuntimeError: for a formula that cannot be evaluated with the columns of the results.
     """
-    if not 0.0 < confidence < 1.0:
-        raise ValueError("confidence: expected a number in (0, 1)")
-    where, remarks = _core.sensitivity(*_named_text(source, "sweep.toml"), _folder(folder), threads, confidence)
+    table, remarks = _core.sensitivity(*_named_text(source, "sweep.toml"), _folder(folder), threads, confidence)
     for remark in remarks:
         warnings.warn(remark, RuntimeWarning, stacklevel=3)
-    return Table.read_csv(os.path.join(where, "sensitivity.csv"))
+    return Table(table)
 
 
 class FittedParameter(NamedTuple):
@@ -192,7 +190,7 @@ class Calibration(_Result):
     @property
     def scenario(self) -> Scenario:
         """The scenario with the fitted parameters, and the files that it names in memory."""
-        return Scenario(self.scenario_text, origin="fitted.toml", files=self._core.scenario_files or None)
+        return Scenario(self.scenario_text, origin="fitted.toml", files=self._core.scenario_files)
 
     @property
     def scenario_text(self) -> str:
@@ -252,11 +250,8 @@ def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Opti
         ValueError: for data whose columns are not of equal length.
         KeyboardInterrupt: on Ctrl-C; all files of the folder are written then, or none.
     """
-    if confidence is not None and not 0.0 < confidence < 1.0:
-        raise ValueError("confidence: expected a number in (0, 1)")
-    level = float("nan") if confidence is None else confidence
     complete, data = _data_as_texts(source)
-    core = _core.calibrate(*_named_text(complete, "calibration.toml"), data, _folder(folder), level)
+    core = _core.calibrate(*_named_text(complete, "calibration.toml"), data, _folder(folder), confidence)
     if core.no_figure:
         warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=3)
     for warning in core.warnings:

@@ -38,13 +38,22 @@ examples/example_sweep "$source/scenarios/die.toml" | tee sweep.txt
 examples/example_own_law | tee law.txt
 grep -q '^complete, force 200 N, expected 200 N' law.txt || fail "own_law"
 
+examples/example_calibrate "$source/scenarios/calibrate/uniaxial.toml" | tee fit.txt
+grep -q '^material.yield_stress .* Pa, 95 % in \[' fit.txt || fail "calibrate"
+[[ -s runs/fit-from-cpp/fitted.toml ]] || fail "calibrate left no fitted.toml"
+
 # --- pkg-config
 if command -v pkg-config > /dev/null; then
   export PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name monograin.pc)")
   # shellcheck disable=SC2046
   g++ -std=c++20 "$source/examples/cpp/run_scenario.cpp" -o by_pkg_config $(pkg-config --cflags --libs monograin)
-  LD_LIBRARY_PATH=$(pkg-config --variable=prefix monograin)/lib:$(dirname "$(find "$prefix" -name 'libmonograin.so')") \
-    ./by_pkg_config | cmp - run.txt || fail "pkg-config"
+  # shellcheck disable=SC2046
+  g++ -std=c++20 "$source/examples/cpp/calibrate.cpp" -o fit_by_pkg_config $(pkg-config --cflags --libs monograin) \
+    -lmonograin_studies
+  LD_LIBRARY_PATH=$(dirname "$(find "$prefix" -name 'libmonograin.so')")
+  export LD_LIBRARY_PATH
+  ./by_pkg_config | cmp - run.txt || fail "pkg-config"
+  ./fit_by_pkg_config "$source/scenarios/calibrate/uniaxial.toml" | cmp - fit.txt || fail "pkg-config, studies"
 fi
 
 # --- the build tree as a package, and add_subdirectory: neither needs what only tests and tools are built with

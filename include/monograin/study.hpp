@@ -1,0 +1,131 @@
+/// Studies of many runs from their files: sweeps, sensitivities, calibrations, and plans of experiments. The library
+/// `monograin::studies` has them; monograin/monograin.hpp does not include this header.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "monograin/history.hpp"
+#include "monograin/scenario.hpp"
+
+namespace monograin::study {
+
+/// A sweep file, a calibration file, or a plan of an experiment.
+struct Source {
+  std::filesystem::path file{};               ///< messages show it; file names in its text are relative to its folder
+  std::optional<std::string> text{};          ///< its text in TOML; none: the file is read
+  std::map<std::string, std::string> data{};  ///< texts of files of data, by the names in the text; others are read
+};
+
+/// Options of calibrate() and design().
+struct Options {
+  std::filesystem::path folder{};  ///< for the files that the program writes; empty: none are written
+  /// Asked now and then. Returning true ends the study by RunInterrupted; all files are written then, or none. An empty
+  /// function never ends it.
+  std::function<bool()> stop{};
+};
+
+/// Options of sweep() and sensitivity().
+struct SweepOptions {
+  std::filesystem::path folder{};  ///< of the results; empty: runs/NAME of the current folder
+  int threads = 0;                 ///< number of threads; 0: one for each core
+  std::size_t shard = 1;           ///< from 1 to shard_count: only every shard_count-th run from this one on is done
+  std::size_t shard_count = 1;     ///< number of processes that share the folder
+  /// Asked after each run, by one thread at a time. Returning true ends the sweep by RunInterrupted; complete runs stay
+  /// in the folder, and the next call does the others. An empty function never ends it.
+  std::function<bool()> stop{};
+};
+
+struct SweepResult {
+  std::filesystem::path folder;
+  std::size_t missing = 0;  ///< number of runs that other shards have yet to do
+  /// Content of results.csv, once no run is missing: a row for each run with its keys, `status`, `reason`, and the
+  /// final
+  /// (`end.axial.force`) and largest (`max.axial.force`) value of every column, in SI units.
+  History results;
+};
+
+/// Runs a sweep, as `monograin sweep` does. Runs that are in the folder already are not repeated.
+/// @throws ScenarioError with all faults of the sweep and its scenario
+/// @throws std::invalid_argument for negative threads, or a shard that is not from 1 to the number of shards
+/// @throws std::runtime_error if the folder holds other files or cannot be written
+/// @throws RunInterrupted if the options end the sweep
+[[nodiscard]] SweepResult sweep(const Source& source, const SweepOptions& options = {});
+
+struct SensitivityResult {
+  std::filesystem::path folder;
+  /// Content of sensitivity.csv: a row for each result and key, with the shares of the variance (design `saltelli`) or
+  /// the elementary effects (design `morris`), and their intervals.
+  History table;
+  std::vector<std::string> warnings;  ///< why the values are not to be trusted, a sentence each
+};
+
+/// Runs a sweep and computes how much each key contributes to the spread of its results, as `monograin sensitivity`
+/// does.
+/// @param confidence  level of the two-sided intervals, in (0, 1)
+/// @throws ScenarioError with all faults of the sweep and its scenario
+/// @throws std::invalid_argument for another design than `saltelli` and `morris`, another confidence, negative threads,
+///         or shards
+/// @throws std::runtime_error for a formula that cannot be evaluated with the columns of the results, or if the folder
+///         holds other files or cannot be written
+/// @throws RunInterrupted if the options end the sweep
+[[nodiscard]] SensitivityResult sensitivity(const Source& source, const SweepOptions& options = {},
+                                            double confidence = 0.95);
+
+/// A fitted number of a scenario, in SI units.
+struct FittedParameter {
+  std::string key;              ///< as Scenario::set() takes it
+  double value = 0.0;           ///< of the best fit
+  double standard_error = 0.0;  ///< of the linearised fit; NaN if the data do not determine the value
+  double lower = 0.0;           ///< ends of the two-sided confidence interval; NaN if there is none
+  double upper = 0.0;
+  bool is_determined = false;  ///< true if the data determine the value
+};
+
+struct CalibrationResult {
+  std::string name;
+  std::vector<FittedParameter> parameters;
+  History fit;                        ///< data, fit, residual, confidence band and weight, row by row
+  Scenario scenario;                  ///< with the fitted parameters, and the files that it names in memory
+  std::vector<std::string> notes;     ///< remarks on the fit, a sentence each
+  std::vector<std::string> warnings;  ///< reasons not to trust the fit; empty for a good one
+  std::string text;                   ///< as `monograin calibrate` prints it
+  std::string json;                   ///< content of calibration.json, with covariance, statistics and minima
+  std::string no_figure;              ///< why the folder has no figure; empty: it has one, or none was asked for
+};
+
+/// Fits parameters of a scenario to measured data, as `monograin calibrate` does.
+/// @param confidence  level of the intervals, in (0, 1); none: that of the file, or 0.95
+/// @throws ScenarioError with all faults of calibration, scenario and data, or if the scenario cannot follow the data
+/// @throws std::invalid_argument for another confidence
+/// @throws std::runtime_error if the folder holds other files or cannot be written
+/// @throws RunInterrupted if the options end the calibration
+[[nodiscard]] CalibrationResult calibrate(const Source& source, const Options& options = {},
+                                          std::optional<double> confidence = {});
+
+struct DesignResult {
+  std::string name;
+  std::vector<std::string> programs;            ///< names of all programs
+  std::vector<std::vector<std::string>> notes;  ///< remarks on the run of each program
+  std::vector<std::string> candidates;          ///< names of the programs that are not planned
+  std::optional<std::string> best_by_volume;    ///< D-optimal candidate; none if no candidate determines all parameters
+  std::optional<std::string> best_by_variances;  ///< A-optimal candidate; none as well
+  bool has_planned = false;  ///< true if the first rows of the table are those of the planned programs alone
+  /// Content of errors.csv: a row for each parameter of the planned programs and of each candidate, in SI units.
+  History table;
+  std::string text;       ///< as `monograin design` prints it
+  std::string no_figure;  ///< why the folder has no figure; empty: it has one, or none was asked for
+};
+
+/// Computes the expected errors of a fit to a planned experiment, as `monograin design` does.
+/// @throws ScenarioError with all faults of plan and scenario, or if the noise of a measured row is zero
+/// @throws std::runtime_error if the folder holds other files or cannot be written
+/// @throws RunInterrupted if the options end the computation
+[[nodiscard]] DesignResult design(const Source& source, const Options& options = {});
+
+}  // namespace monograin::study

@@ -1,0 +1,158 @@
+// Sweeps, sensitivities, calibrations and plans of experiments, as others use them.
+
+#include "monograin/study.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "api/ready.hpp"
+#include "monograin/run.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace monograin::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path k_scenarios = fs::path(MONOGRAIN_SOURCE_DIR) / "scenarios";
+
+/// A sweep of the ready die over yield stresses [MPa], in memory.
+Source yield_stresses(const std::string& values) {
+  return {.file = k_scenarios / "stresses.toml",
+          .text = "scenario = \"die.toml\"\ndesign = \"grid\"\n[vary]\n\"material.yield_stress\" = { values = " +
+                  values + " }\n"};
+}
+
+TEST(StudySweep, HasARowForEachRunWithTheNumbersOfThatRun) {
+  const TemporaryFolder folder;
+  const SweepResult found = sweep(yield_stresses("[\"30 MPa\", \"50 MPa\"]"), {.folder = folder.path() / "s"});
+  EXPECT_EQ(found.missing, 0U);
+  EXPECT_TRUE(fs::exists(found.folder / "results.csv"));
+  ASSERT_EQ(found.results.row_count(), 2U);
+  EXPECT_EQ(found.results.words("status")[1], "complete");
+  Scenario soft = ready_scenario("die.toml");
+  const RunResult run = monograin::run(soft.set("material.yield_stress", 30e6));
+  EXPECT_EQ(found.results["end.axial.force"][0], run.history["axial.force"].back());
+}
+
+TEST(StudySweep, IsDoneInShardsAndGoesOnWhereItWasEnded) {
+  const TemporaryFolder folder;
+  const Source source = yield_stresses("[30e6, 35e6, 40e6, 45e6]");
+  const fs::path parts = folder.path() / "parts";
+  const SweepResult half = sweep(source, {.folder = parts, .shard = 1, .shard_count = 2});
+  EXPECT_EQ(half.missing, 2U);
+  EXPECT_EQ(half.results.row_count(), 0U);
+  EXPECT_EQ(sweep(source, {.folder = parts, .shard = 2, .shard_count = 2}).results.row_count(), 4U);
+
+  const fs::path ended = folder.path() / "ended";
+  int asked = 0;
+  EXPECT_THROW(static_cast<void>(sweep(source, {.folder = ended, .threads = 1, .stop = [&] { return ++asked == 3; }})),
+               RunInterrupted);
+  asked = 0;
+  const SweepResult rest = sweep(source, {.folder = ended, .threads = 1, .stop = [&] { return ++asked < 0; }});
+  EXPECT_EQ(rest.results.row_count(), 4U);
+  EXPECT_EQ(asked, 1) << "the runs before the end were kept";
+}
+
+TEST(StudySweep, RefusesShardsThreadsAndFaults) {
+  const Source source = yield_stresses("[30e6, 40e6]");
+  EXPECT_THROW(static_cast<void>(sweep(source, {.shard = 3, .shard_count = 2})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(sweep(source, {.shard = 0})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(sweep(source, {.threads = -1})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(sensitivity(source, {.shard_count = 2})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(sensitivity(source, {}, 1.0)), std::invalid_argument);
+  try {
+    static_cast<void>(sweep({.file = "there/is/none.toml"}));
+    FAIL() << "nothing was thrown";
+  } catch (const ScenarioError& error) {
+    EXPECT_NE(std::string_view(error.what()).find("none.toml"), std::string_view::npos) << error.what();
+  }
+}
+
+TEST(StudySensitivity, GivesTheSharesOfEachKey) {
+  const TemporaryFolder folder;
+  const Source source{
+      .file = k_scenarios / "few.toml",
+      .text =
+          "scenario = \"die.toml\"\ndesign = \"saltelli\"\nsamples = 256\nresults = [\"max.axial.force\"]\n"
+          "[vary]\n\"material.yield_stress\" = { from = \"30 MPa\", to = \"60 MPa\" }\n"
+          "\"material.youngs_modulus\" = { from = \"1 GPa\", to = \"1.1 GPa\" }\n"};
+  const SensitivityResult found = sensitivity(source, {.folder = folder.path() / "s"}, 0.9);
+  ASSERT_EQ(found.table.row_count(), 2U);
+  EXPECT_GT(found.table["total"][0], 0.9) << "the yield stress";
+  EXPECT_LT(found.table["total"][1], 0.1) << "Young's modulus";
+}
+
+TEST(StudyCalibration, FindsTheParametersOfItsDataAndTheirScenario) {
+  const CalibrationResult fit = calibrate({.file = k_scenarios / "calibrate" / "uniaxial.toml"});
+  ASSERT_EQ(fit.parameters.size(), 2U);
+  EXPECT_EQ(fit.parameters[1].key, "material.yield_stress");
+  for (const FittedParameter& parameter : fit.parameters) {
+    EXPECT_TRUE(parameter.is_determined) << parameter.key;
+    EXPECT_LT(parameter.lower, parameter.value);
+    EXPECT_GT(parameter.upper, parameter.value);
+    EXPECT_LT(parameter.standard_error, 0.02 * parameter.value);
+  }
+  EXPECT_TRUE(fit.warnings.empty());
+  EXPECT_NE(fit.json.find("\"material.yield_stress\""), std::string::npos);
+  const std::vector<Parameter> fitted = fit.scenario.parameters();
+  const auto found = std::ranges::find(fitted, "yield_stress", &Parameter::name);
+  ASSERT_NE(found, fitted.end());
+  EXPECT_EQ(found->value, fit.parameters[1].value);
+  EXPECT_EQ(monograin::run(fit.scenario).status, RunStatus::complete);
+}
+
+TEST(StudyCalibration, TakesDataInMemoryAndALevelAndWritesItsFiles) {
+  const TemporaryFolder folder;
+  std::string data = "displacement[mm],force[kN]\n";
+  Scenario truth = ready_scenario("uniaxial.toml");
+  const History history = monograin::run(truth.set("output.points", 20)).history;
+  for (std::size_t k = 0; k < history.row_count(); ++k) {
+    data += std::to_string(1e3 * history["axial.displacement"][k]) + "," +
+            std::to_string(1e-3 * history["axial.force"][k]) + "\n";
+  }
+  const Source source{.file = k_scenarios / "calibrate" / "mine.toml",
+                      .text =
+                          "scenario = \"../uniaxial.toml\"\n"
+                          "[data]\nfile = \"mine.csv\"\nx = \"displacement[mm]\"\ny = \"force[kN]\"\n"
+                          "[free]\n\"material.yield_stress\" = { from = \"1 MPa\", to = \"200 MPa\" }\n",
+                      .data = {{"mine.csv", data}}};
+  const CalibrationResult wide = calibrate(source, {.folder = folder.path() / "fit"}, 0.99);
+  const CalibrationResult narrow = calibrate(source, {}, 0.5);
+  EXPECT_GT(wide.parameters[0].upper - wide.parameters[0].lower,
+            2.0 * (narrow.parameters[0].upper - narrow.parameters[0].lower));
+  const std::vector<Parameter> parameters = truth.parameters();
+  const auto true_stress = std::ranges::find(parameters, "yield_stress", &Parameter::name);
+  EXPECT_NEAR(wide.parameters[0].value / true_stress->value, 1.0, 1e-3);
+  for (const char* name : {"fit.csv", "fitted.toml", "calibration.json"}) {
+    EXPECT_TRUE(fs::exists(folder.path() / "fit" / name)) << name;
+  }
+  EXPECT_THROW(static_cast<void>(calibrate(source, {}, 0.0)), std::invalid_argument);
+  const fs::path none = folder.path() / "none";
+  EXPECT_THROW(static_cast<void>(calibrate(source, {.folder = none, .stop = [] { return true; }})), RunInterrupted);
+  EXPECT_FALSE(fs::exists(none / "fit.csv"));
+}
+
+TEST(StudyDesign, NamesTheBestCandidateAndTheErrorsOfAll) {
+  const DesignResult plan = design({.file = k_scenarios / "design" / "uniaxial.toml"});
+  EXPECT_EQ(plan.programs.size(), 3U);
+  EXPECT_EQ(plan.notes.size(), 3U);
+  ASSERT_EQ(plan.candidates.size(), 2U);
+  EXPECT_TRUE(plan.has_planned);
+  EXPECT_EQ(plan.table.row_count(), 6U) << "two parameters of the planned program and of each candidate";
+  EXPECT_EQ(plan.best_by_volume, "unloading");
+  EXPECT_LT(plan.table["volume"][3], plan.table["volume"][5]) << "the best one has the least volume";
+  EXPECT_THROW(
+      static_cast<void>(design({.file = k_scenarios / "design" / "uniaxial.toml"}, {.stop = [] { return true; }})),
+      RunInterrupted);
+}
+
+}  // namespace
+}  // namespace monograin::study
