@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cel/constants.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::cel {
 namespace {
