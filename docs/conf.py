@@ -73,6 +73,8 @@ autodoc_member_order = "bysource"
 napoleon_use_ivar = True
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
+# The union of all that numpy makes an array of, by its name.
+autodoc_type_aliases = {"ArrayLike": "ArrayLike"}
 
 # --- Python examples: a page and a notebook of each script, which runs when the site is built
 
