@@ -32,7 +32,8 @@ Material::Material(double yield_stress, double poisson_ratio) noexcept
       a_Y(xi_Y * Y / Es),
       xi_by_zeta(Es / Y) {}
 
-/// With x = E* zeta/Y - xi_Y >= 0, by (cel-dent), (cel-pressure), (cel-limit) and (cel-influence) of docs/theory/cel.md:
+/// With x = E* zeta/Y - xi_Y >= 0, by (cel-dent), (cel-pressure), (cel-limit) and (cel-influence) of
+/// docs/theory/cel.md:
 ///   h = zeta^2 [k0 (x/(x + x1))^2 + k1 (zeta^2 - a_Y^2)/(1 + x/x2)]
 ///   p = p_xi (1 + v^k)^(-1/k),   v = p_xi h/(ps (h + hs)),   p_xi = pY + p_Delta tau/(1 + sqrt(tau))^2
 ///   q = exp(-q1 h)/3,            Gam = 1 + gam (1 - exp(-h/hg))

@@ -23,8 +23,8 @@ namespace monograin::cel {
 }
 
 /// An orthonormal basis of the tensors among which the shape of the core stays. The first is the unit tensor over
-/// sqrt(3), so that all others are deviators. Empty if the unit tensor is the only one: walls that load the core by pressures only
-/// leave its shape as it is.
+/// sqrt(3), so that all others are deviators. Empty if the unit tensor is the only one: walls that load the core by
+/// pressures only leave its shape as it is.
 /// @param spreads  sum of n n over the walls of each class
 [[nodiscard]] std::vector<Eigen::Matrix3d> core_shapes(std::span<const Eigen::Matrix3d> spreads);
 

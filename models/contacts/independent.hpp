@@ -1,5 +1,6 @@
 /// Contacts that each depend on their own wall alone, as a hybrid system: all that such laws share. A law describes one
-/// contact. Displacements are over the particle's radius R0, forces over the law's unit.
+/// contact. Displacements are over the particle's radius R0, forces over the law's unit. The displacement d of a
+/// contact is the approach of wall and particle: the displacement of the wall plus that of a free centre towards it.
 ///
 /// A law has
 ///   Branch, k_regimes           memory of a contact (Branch{}: a fresh contact); words of its regimes
@@ -53,7 +54,7 @@ namespace monograin::contacts {
 
 struct Settings {
   double initial_radius = 1.0;  ///< R0 [m], > 0
-  /// Gives the scales of the unknowns, to which absolute tolerances are relative. 0: unknown.
+  /// Largest prescribed displacement [m] and force [N]; 0: unknown. Only the scales of the unknowns depend on it.
   Reach reach{};
   bool centre_is_free = false;  ///< the centre moves so that the forces balance
 };
@@ -67,7 +68,7 @@ class IndependentContacts final : public HybridSystem {
         classes_(std::move(classes)),
         contacts_(classes_.size()),
         slots_(classes_.size()),
-        displacements_(classes_.size()),
+        approaches_(classes_.size()),
         followers_(law_, classes_),
         columns_(stores_energy(), k_has_contact_area<Law>, Law::k_regimes, classes_, settings.centre_is_free),
         scales_(scales_of(law_, settings.reach.displacement / units_.length, settings.reach.force / units_.force)) {
@@ -107,18 +108,17 @@ class IndependentContacts final : public HybridSystem {
   }
 
   void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) override {
-    std::vector<double> at(contacts_.size());
+    std::vector<double> begin(contacts_.size());  // approaches
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const bool is_by_force = ramps[i].control == Control::force;
-      const double stood = is_by_force ? left_at(i, y) : 0.0;
       const WallDrive drive(ramps[i], is_by_force ? units_.force : units_.length);
-      at[i] = contacts_[i].set_drive(law_, drive, stood, classes_[i].takes_force, carried(i, y));
+      begin[i] = contacts_[i].set_drive(law_, drive, left_at(i, y), classes_[i].takes_force, carried(i, y));
       // y takes the coordinates of this step even if the step cannot begin, so that the last row shows its start.
-      if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate(law_, 0.0, at[i]);
+      if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate(law_, 0.0, begin[i]);
     }
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (followers_.follows(i) || follows_centre(i)) continue;
-      if (const auto end = contacts_[i].begin_step(law_, at[i], is_seen(i), log, carried(i, y)))
+      if (followers_.follows(i) || depends_on_centre(i)) continue;
+      if (const auto end = contacts_[i].begin_step(law_, begin[i], is_seen(i), log, carried(i, y)))
         throw CannotBegin(*end);
     }
     if (centre_) centre_->begin_step(law_, contacts_, y);
@@ -133,21 +133,21 @@ class IndependentContacts final : public HybridSystem {
     if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (classes_[i].takes_force && !contacts_[i].is_integrated(law_))
-        y[slots_[i]] = contacts_[i].coordinate_near(law_, xi, y[slots_[i]]);
+        y[slots_[i]] = contacts_[i].coordinate_from(law_, xi, y[slots_[i]]);
     }
   }
   void solve(double xi, std::span<double> y) override {
     if (unknowns_.size() == 1) return;  // the work is the only unknown
     if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate_near(law_, xi, y[slots_[i]]);
+      if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate_from(law_, xi, y[slots_[i]]);
     }
   }
 
   void rates(double xi, std::span<const double> y, std::span<double> dy) override {
     const FreeCentre::Vector velocity = centre_velocity(xi, y);
     dy[work_slot_] = sum([&](std::size_t i) {
-      const auto now = contacts_[i].slope(law_, y[slots_[i]]);
+      const auto now = contacts_[i].slope(law_, coordinate(i, y));
       if (classes_[i].takes_force) dy[slots_[i]] = contacts_[i].rate(now);
       return power(i, xi, y, now, velocity);
     });
@@ -164,7 +164,7 @@ class IndependentContacts final : public HybridSystem {
     for (std::size_t k = work_slot_ + 1; k < y.size(); ++k) res[k] = y[k] - trial_[k];
     const FreeCentre::Vector velocity = centre_velocity(xi, trial_);
     res[work_slot_] = dy[work_slot_] - sum([&](std::size_t i) {
-                        const auto now = contacts_[i].slope(law_, y[slots_[i]]);
+                        const auto now = contacts_[i].slope(law_, coordinate(i, y));
                         if (classes_[i].takes_force)
                           res[slots_[i]] = contacts_[i].residual(law_, xi, y[slots_[i]], now);
                         return power(i, xi, trial_, now, velocity);
@@ -173,11 +173,14 @@ class IndependentContacts final : public HybridSystem {
 
   [[nodiscard]] std::optional<double> closed_quadrature(double xi, std::span<const double> y) override {
     if constexpr (k_has_work) {
+      // With a free centre the sum still is the work of the walls: the forces on the centre balance, so that its motion
+      // does no work.
       return sum([&](std::size_t i) {
         if (!contacts_[i].touches()) return 0.0;
         const Branch& branch = contacts_[i].branch();
-        // A centre that leaves a contact in no time takes it beyond its opening before it is lost.
-        return law_.work(branch, std::max(displacement(i, xi, y), law_.opening(branch)));
+        // In the instant in which the centre jumps, a touching contact may lie below its opening, where it bears
+        // nothing.
+        return law_.work(branch, std::max(approach(i, xi, y), law_.opening(branch)));
       });
     } else {
       return std::nullopt;
@@ -200,7 +203,7 @@ class IndependentContacts final : public HybridSystem {
       const Guard& guard = guards_.list()[g];
       const double target = guards_.target(g);
       const std::size_t i = guard.list_index();
-      if (follows_centre(i)) {
+      if (depends_on_centre(i)) {
         values[g] = centre_->guard_value(law_, contacts_, i, guard.kind, target, xi, y, velocity);
         continue;
       }
@@ -219,16 +222,16 @@ class IndependentContacts final : public HybridSystem {
       std::optional<DomainEnd> end;
       if (guard.kind == k_made)
         c.make(law_, true, log);
-      else if (guard.kind == k_lost && !(follows_centre(i) && centre_->bears_on(law_, contacts_, i, xi, y)))
+      else if (guard.kind == k_lost && !(depends_on_centre(i) && centre_->bears_on(law_, contacts_, i, xi, y)))
         c.lose(law_, log, carried(i, y));
       else if (guard.kind == k_retreat)
-        c.retreat(law_, displacement(i, xi, y), guard.name, log, carried(i, y));
+        c.retreat(law_, approach(i, xi, y), guard.name, log, carried(i, y));
       else if (guard.kind == k_boundary)
         end = c.pass(law_, *c.next(law_), log);
       // The next boundary may lie within the round-off of the ramp, as with the opening of a dent near the resolution:
       // it is passed at once.
       const bool is_pressed_on = guard.kind == k_made || guard.kind == k_boundary;
-      if (!end && is_pressed_on && !follows_centre(i)) end = c.pass_reached(law_, xi, log);
+      if (!end && is_pressed_on && !depends_on_centre(i)) end = c.pass_reached(law_, xi, log);
       if (end) return end;
     }
     if (const auto end = find_mode(xi, y, log, fired)) return end;
@@ -238,12 +241,12 @@ class IndependentContacts final : public HybridSystem {
   }
 
   void observe(double xi, std::span<const double> y, std::span<double> values) override {
-    for (std::size_t i = 0; i < contacts_.size(); ++i) displacements_[i] = displacement(i, xi, y);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) approaches_[i] = approach(i, xi, y);
     if constexpr (requires(Law & law) { law.note(1.0); })
-      std::ranges::for_each(displacements_, [&](double d) { law_.note(d); });
+      std::ranges::for_each(approaches_, [&](double d) { law_.note(d); });
     columns_.write(
         has_energies() ? energies(y[work_slot_]) : k_no_energies, contacts_.size(),
-        [&](std::size_t i) { return visible(i, xi, displacements_[followers_.leading(i)], carried(i, y)); }, values);
+        [&](std::size_t i) { return visible(i, xi, approaches_[followers_.leading(i)], carried(i, y)); }, values);
     if (centre_) write_centre_columns(centre_->in_space(y) * units_.length, values);
   }
 
@@ -252,7 +255,7 @@ class IndependentContacts final : public HybridSystem {
     const bool is_of_area = quantity == Quantity::pressure || quantity == Quantity::contact_radius;
     if (is_of_area && !k_has_contact_area<Law>) throw std::logic_error("no such quantity at a wall of this model");
     const auto i = static_cast<std::size_t>(contact_class);
-    const VisibleContact shown = visible(i, xi, displacement(followers_.leading(i), xi, y), carried(i, y));
+    const VisibleContact shown = visible(i, xi, approach(followers_.leading(i), xi, y), carried(i, y));
     return quantity_of(wall_of(shown, units_.length), quantity);
   }
   /// Present value of what a control prescribes, where a ramp begins. For an integrated displacement, gives the exact
@@ -260,7 +263,7 @@ class IndependentContacts final : public HybridSystem {
   [[nodiscard]] double controlled(Control control, int contact_class, double xi, std::span<const double> y) override {
     const auto i = static_cast<std::size_t>(contact_class);
     if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
-    const double d = displacement(i, xi, y);
+    const double d = approach(i, xi, y);
     if (!contacts_[i].is_integrated(law_)) return (d - carried(i, y)) * units_.length;
     return (contacts_[i].displacement_under(law_, contacts_[i].drive().value(xi), d) - carried(i, y)) * units_.length;
   }
@@ -269,7 +272,7 @@ class IndependentContacts final : public HybridSystem {
     std::vector<SurfacePoint> points;
     if constexpr (requires(Law & law, const Branch& b) { law.surface(b, 1.0); }) {
       const auto i = static_cast<std::size_t>(contact_class);
-      const double d = displacement(i, xi, y);
+      const double d = approach(i, xi, y);
       if (contacts_[i].bears(law_, d)) points = law_.surface(contacts_[i].branch(), d);
       for (SurfacePoint& point : points) point = units_.in_si(point);
     }
@@ -302,7 +305,7 @@ class IndependentContacts final : public HybridSystem {
     if constexpr (k_can_store_energy) {
       if (stores_energy()) {
         stored = sum([&](std::size_t i) {
-          const double d = displacements_[i];
+          const double d = approaches_[i];
           return contacts_[i].bears(law_, d) ? law_.stored(contacts_[i].branch(), d) : 0.0;
         });
       }
@@ -324,20 +327,26 @@ class IndependentContacts final : public HybridSystem {
     return total;
   }
 
-  /// Displacement of a contact: that of its wall, plus the displacement of a free centre towards this wall.
-  [[nodiscard]] double displacement(std::size_t i, double xi, std::span<const double> y) const {
-    const double d = contacts_[i].displacement(law_, xi, y[slots_[i]]);
+  /// Approach of wall and particle, the displacement of a contact: that of its wall, plus the displacement of a free
+  /// centre towards this wall.
+  [[nodiscard]] double approach(std::size_t i, double xi, std::span<const double> y) const {
+    const double d = contacts_[i].displacement(law_, xi, coordinate(i, y));
     return centre_ ? centre_->displacement(law_, contacts_[i], i, d, y) : d;
+  }
+
+  /// Coordinate of a contact; 0 for a class that never takes a force, and has none.
+  [[nodiscard]] double coordinate(std::size_t i, std::span<const double> y) const {
+    return classes_[i].takes_force ? y[slots_[i]] : 0.0;
   }
 
   /// Displacement of a contact at the end of the last step.
   [[nodiscard]] double left_at(std::size_t i, std::span<const double> y) const {
-    const double d = contacts_[i].displacement_at(law_, y[slots_[i]]);
-    return follows_centre(i) ? d + carried(i, y) : d;
+    const double d = contacts_[i].displacement_of(law_, coordinate(i, y));
+    return depends_on_centre(i) ? d + carried(i, y) : d;
   }
 
   /// True for a contact whose displacement depends on where a free centre is.
-  [[nodiscard]] bool follows_centre(std::size_t i) const noexcept {
+  [[nodiscard]] bool depends_on_centre(std::size_t i) const noexcept {
     return centre_.has_value() && !contacts_[i].is_force_controlled();
   }
   /// By how much a free centre has moved towards the walls of a class.
@@ -389,7 +398,7 @@ class IndependentContacts final : public HybridSystem {
   void arm_guards(double xi, std::span<const double> y) {
     guards_.clear();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (follows_centre(i)) {
+      if (depends_on_centre(i)) {
         centre_->arm_guards(law_, contacts_[i], i, xi, y, guards_);
       } else if (!followers_.follows(i)) {
         arm_wall(law_, contacts_[i], i, guards_);
@@ -401,8 +410,8 @@ class IndependentContacts final : public HybridSystem {
   Units units_;
   std::vector<ContactClass> classes_;
   std::vector<Contact> contacts_;
-  std::vector<std::size_t> slots_;     ///< index in y of the coordinate of each class that takes a force
-  std::vector<double> displacements_;  ///< displacements of the contacts in a row
+  std::vector<std::size_t> slots_;  ///< index in y of the coordinate of each class that takes a force
+  std::vector<double> approaches_;  ///< of the contacts in a row
   Followers<Law> followers_;
   Columns columns_;
   Scales scales_;

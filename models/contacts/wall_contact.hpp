@@ -17,7 +17,7 @@ namespace monograin::contacts {
 
 /// End of a part of the primary loading branch.
 struct Boundary {
-  double position = 0.0;              ///< displacement over R0; still belongs to the part before
+  double position = 0.0;              ///< last displacement over R0 of the part before it
   std::string_view event{};           ///< empty: no event
   std::optional<LimitPoint> limit{};  ///< the law ends here
   bool is_of_followers = false;       ///< the event belongs to the contacts that follow this one
@@ -57,8 +57,8 @@ class WallContact {
 
   // --- at an instant
 
-  /// Force of a wall under force control. Where a mode is decided ahead, a falling force may already be below zero, and
-  /// a wall does not pull.
+  /// Force of a wall under force control, never negative: a state evaluated a little ahead may lie beyond the instant
+  /// at which a falling force reaches zero.
   [[nodiscard]] double prescribed_force(double xi) const noexcept {
     return touches_ ? std::max(0.0, drive_.value(xi)) : 0.0;
   }
@@ -71,10 +71,16 @@ class WallContact {
     return law.displacement(branch_, force);
   }
 
-  // Coordinate u of a wall whose force is prescribed at some time: the displacement while the displacement is
-  // prescribed, otherwise in proportion to the force. u is linear in the step coordinate, hence exact in every form of
-  // the equations, and not singular at first touch or where a contact opens with an infinite compliance. A law whose
-  // inverse is costly may name the power n with which its force begins; then u = d^n, and is integrated.
+  // Coordinate u of a wall whose force is prescribed at some time:
+  //
+  //   control                                 coordinate u                displacement d
+  //   displacement                            d                           as prescribed
+  //   force                                   F / force_per_coordinate    law.displacement(F)
+  //   force, if the law names a power n       d^n                         u^(1/n)
+  //
+  // In the first two cases u is linear in the step coordinate, hence exact in every form of the equations, and not
+  // singular at first touch or where a contact opens with an infinite compliance. A law whose inverse is costly names
+  // the power n with which its force begins; u is then integrated if the law asks for that.
 
   /// n of the coordinate d^n; 0: the coordinate is in proportion to what is prescribed.
   [[nodiscard]] double coordinate_power(const Law& law) const {
@@ -87,14 +93,17 @@ class WallContact {
     if constexpr (requires { law.is_integrated(branch_); }) return has_power && law.is_integrated(branch_);
     return has_power;
   }
-  [[nodiscard]] double displacement_at(const Law& law, double u) const {
+  /// Displacement at a coordinate.
+  [[nodiscard]] double displacement_of(const Law& law, double u) const {
     const double n = coordinate_power(law);
     if (n > 0.0) return std::copysign(std::pow(std::abs(u), 1.0 / n), u);
     return is_force_controlled() ? displacement_under(law, u * force_per_coordinate_) : u;
   }
+  /// Displacement at an instant of the step.
+  /// @param u  coordinate there; used only if it is a power of the displacement
   [[nodiscard]] double displacement(const Law& law, double xi, double u) const {
     if (!is_force_controlled()) return drive_.value(xi);
-    return coordinate_power(law) > 0.0 ? displacement_at(law, u) : displacement_under(law, drive_.value(xi));
+    return coordinate_power(law) > 0.0 ? displacement_of(law, u) : displacement_under(law, drive_.value(xi));
   }
   /// Coordinate at an instant of the step.
   /// @param near  displacement with which a law that iterates begins
@@ -105,8 +114,8 @@ class WallContact {
   }
   /// Coordinate at an instant of the step.
   /// @param u  a coordinate nearby, with which a law that iterates begins
-  [[nodiscard]] double coordinate_near(const Law& law, double xi, double u) const {
-    return coordinate(law, xi, coordinate_power(law) > 0.0 ? displacement_at(law, u) : 0.0);
+  [[nodiscard]] double coordinate_from(const Law& law, double xi, double u) const {
+    return coordinate(law, xi, coordinate_power(law) > 0.0 ? displacement_of(law, u) : 0.0);
   }
 
   /// Prescribed quantity at a coordinate, and its derivatives by the coordinate and the displacement. Where coordinate
@@ -116,6 +125,7 @@ class WallContact {
     double by_coordinate = 0.0;
     double by_displacement = 0.0;
   };
+  /// @param u  coordinate; used only if it is a power of the displacement
   [[nodiscard]] Slope slope(const Law& law, double u) const {
     if constexpr (k_has_powers) {
       if (const double n = coordinate_power(law); n > 0.0) return slope_of_power(law, n, u);
@@ -129,7 +139,7 @@ class WallContact {
   /// Residual of the coordinate, in units of the coordinate, as integrators weigh it.
   [[nodiscard]] double residual(const Law& law, double xi, double u, const Slope& now) const {
     return is_integrated(law) ? (now.prescribed - drive_.value(xi)) / now.by_coordinate
-                              : u - coordinate_near(law, xi, u);
+                              : u - coordinate_from(law, xi, u);
   }
   /// Rate of the work of one wall: F dd, which is F dF/(dF/dd) where the force is prescribed.
   [[nodiscard]] double power(const Law& law, double xi, const Slope& now) const {
@@ -173,32 +183,22 @@ class WallContact {
 
   // --- transitions
 
-  /// Sets the drive of the wall for a step. Values that agree to k_same_value count as equal: a wall at rest goes on
-  /// from where it is, a wall at its dent is not pressed in again, and a ramp between two equal values lets the wall
-  /// rest.
-  /// @param d            displacement of the contact at the end of the last step; used if the ramp is one of force
+  /// Sets the drive of the wall for a step. Values that differ by round-off count as equal: a wall at rest goes on from
+  /// where it is, a wall at its dent is not pressed in again, and a ramp between two equal values lets the wall rest.
+  /// @param left_at      displacement of the contact at the end of the last step; used if the ramp is one of force
   /// @param takes_force  false: no force has ever moved the wall
   /// @param carried      by how much a free centre has moved towards the wall
   /// @return displacement of the contact
-  double set_drive(const Law& law, WallDrive drive, double d, bool takes_force, double carried = 0.0) {
-    constexpr double k_most_round_off = 4.0 * k_round_off;
+  double set_drive(const Law& law, WallDrive drive, double left_at, bool takes_force, double carried) {
     const bool is_by_force = drive.is_force_controlled();
     if (drive_.direction() == 0 && is_force_controlled() == is_by_force) drive.start_at(drive_.end());
     if (!touches_ && !is_by_force) {
       const double opening = law.opening(branch_);
       if (std::abs(drive.start() + carried - opening) <= k_most_round_off * opening) drive.start_at(opening - carried);
     }
-    if (!is_by_force) d = drive.start() + carried;
+    const double d = is_by_force ? left_at : drive.start() + carried;
     double size = drive.size();
-    if (touches_ && takes_force && d > law.opening(branch_)) {
-      // A force that holds a wall has the round-off of the wall's displacement; a displacement reached under a force
-      // has the round-off of the force.
-      const double slope = law.slope(branch_, d);
-      if (is_by_force)
-        size += slope * std::abs(d);
-      else if (slope > 0.0)
-        size += law.force(branch_, d) / slope + std::abs(d);
-    }
+    if (touches_ && takes_force && d > law.opening(branch_)) size += size_of_reached(law, d, is_by_force);
     if (std::abs(drive.rate()) <= k_most_round_off * size) drive.rest();
     // An integrated displacement has an error: the step begins at the exact displacement under its first force.
     const bool is_integrated_on = is_by_force && is_integrated(law);
@@ -209,7 +209,7 @@ class WallContact {
   /// Decides the branch at the start of a step, where the wall is at d.
   /// @param is_seen  true: a contact that is made then is an event
   /// @param carried  by how much a free centre has moved towards the wall
-  std::optional<DomainEnd> begin_step(Law& law, double d, bool is_seen, std::vector<Event>& log, double carried = 0.0) {
+  std::optional<DomainEnd> begin_step(Law& law, double d, bool is_seen, std::vector<Event>& log, double carried) {
     const bool goes_in = drive_.direction() > 0;
     if (!touches_) {
       resting_ = d - carried;
@@ -307,6 +307,15 @@ class WallContact {
     return PassedAtEnd::opening;
   }();
 
+  static constexpr double k_most_round_off = 4.0 * k_round_off;  ///< of values of a ramp
+
+  /// Magnitude whose round-off a ramp has that begins where another control has led: a force that holds a wall has the
+  /// round-off of the wall's displacement, a displacement reached under a force that of the force.
+  [[nodiscard]] double size_of_reached(const Law& law, double d, bool is_by_force) const {
+    const double slope = law.slope(branch_, d);
+    if (is_by_force) return slope * std::abs(d);
+    return slope > 0.0 ? law.force(branch_, d) / slope + std::abs(d) : 0.0;
+  }
   [[nodiscard]] double prescribed_per_coordinate() const noexcept {
     return is_force_controlled() ? force_per_coordinate_ : 1.0;
   }
@@ -317,7 +326,8 @@ class WallContact {
   }
   /// Slope for the coordinate u = d^n. Odd in u, so that a trial step below zero stays smooth.
   [[nodiscard]] Slope slope_of_power(const Law& law, double n, double u) const {
-    constexpr double k_nearest = 1e-100;  // the force is linear in u up to this displacement
+    constexpr double k_nearest =
+        1e-100;  // the force is linear in u up to this displacement, where powers of it underflow
     const double d = std::pow(std::abs(u), 1.0 / n);
     const double by_displacement_of_u = n * std::pow(d, n - 1.0);
     if (d <= k_nearest) {

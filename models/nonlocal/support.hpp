@@ -27,9 +27,7 @@ namespace monograin::nonlocal {
 /// leave it without approaching another one. A wall under force control never supports the centre.
 class CentreSupport {
  public:
-  explicit CentreSupport(const Contacts& contacts) : walls_(contacts.class_count()) {
-    normals_.reserve(walls_.size());
-  }
+  explicit CentreSupport(const Contacts& contacts) : walls_(contacts.class_count()) { normals_.reserve(walls_.size()); }
 
   /// @param may_bear  class -> whether it may bear
   /// @param is_force  class -> whether it is under force control
