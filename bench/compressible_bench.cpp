@@ -1,20 +1,14 @@
-// Cost of one evaluation of the contact law of a compressible particle, and of the parts of its material point. The
-// label of each benchmark is its cost floor: the time of a prototype with precomputed material constants on one core
-// (g++ -O3, best of several runs).
+// Cost of one evaluation of the contact law of a compressible particle. The label of each benchmark is its cost floor:
+// the time of a prototype with precomputed material constants on one core (g++ -O3, best of several runs).
 #include <benchmark/benchmark.h>
 
 #include <array>
-#include <vector>
 
-#include "compressible/contact_law.hpp"
-#include "compressible/material_point.hpp"
-#include "compressible/yield_surface.hpp"
+#include "compressible/law.hpp"
 #include "law_timing.hpp"
 
 namespace monograin::compressible {
 namespace {
-
-// --- contact
 
 /// Contact laws of the source's base case.
 struct Granule {
@@ -64,53 +58,6 @@ BENCHMARK_CAPTURE(unloading, hertz, "floor 12 ns");
 BENCHMARK_CAPTURE(loading_under_force, exponential, "floor 4 ns");
 BENCHMARK_CAPTURE(unloading_under_force, hertz, "floor 11 ns");
 BENCHMARK_CAPTURE(turning_back, hertz, "floor 9 ns");
-
-// --- material point
-
-Parameters material(YieldModel model) {
-  return {.model = model, .eta = 10.0, .xi = 7.5, .zeta = 10.0, .omega = 10.0, .xi1 = 0.4, .xi2 = 1.5};
-}
-
-void properties(benchmark::State& state, const char* floor) {
-  const Parameters parameters = material(YieldModel::vmdc);
-  time_law(state, floor, 0.0, 0.2, [&](double phi) { return properties_at(parameters, phi); });
-}
-
-/// Times yield function and plastic potential with their derivatives, at fixed properties.
-void yield(benchmark::State& state, YieldModel model, Segment segment, double least_pressure, const char* floor) {
-  const Parameters parameters = material(model);
-  const Properties at = properties_at(parameters, 0.1);
-  time_law(state, floor, least_pressure, 0.0,
-           [&](double p) { return yield_on(parameters, at, {.segment = segment}, p, -0.5); });
-}
-
-/// Times the rates of a material point that yields in a die.
-void plastic_rates(benchmark::State& state, YieldModel model, const char* floor) {
-  MaterialPoint point({.parameters = material(model), .yield_pressure = 1e6});
-  std::vector<double> y(point.unknowns().size());
-  std::vector<double> dy(y.size());
-  std::vector<Event> log;
-  const std::array ramps{Ramp{0.0, -0.2, Control::strain}, Ramp{0.0, 0.0, Control::strain}};
-  point.start(y);
-  point.begin_step(ramps, y, log);
-  std::array<double, 1> yielding{};
-  point.guard_values(0.0, y, yielding);
-  const double xi = -yielding[0];
-  static_cast<void>(point.fire(std::array<std::size_t, 1>{0}, xi, y, log));
-  // An interval of xi so short that the state, which is not integrated, stays close to the yield surface.
-  time_law(state, floor, xi, xi + 1e-4, [&](double at) {
-    point.rates(at, y, dy);
-    return dy[0];
-  });
-}
-
-BENCHMARK_CAPTURE(properties, vmdc, "floor 35 ns");
-BENCHMARK_CAPTURE(yield, vm_shear, YieldModel::vm, Segment::shear, -1.0, "floor 2 ns");
-BENCHMARK_CAPTURE(yield, vmdc_cap, YieldModel::vmdc, Segment::cap, -2.0, "floor 11 ns");
-BENCHMARK_CAPTURE(yield, dpc_shear, YieldModel::dpc, Segment::shear, -1.0, "floor 7 ns");
-BENCHMARK_CAPTURE(yield, dpc_cap, YieldModel::dpc, Segment::cap, -2.0, "floor 7 ns");
-BENCHMARK_CAPTURE(plastic_rates, vmdc, YieldModel::vmdc, "floor 28 ns");
-BENCHMARK_CAPTURE(plastic_rates, dpc, YieldModel::dpc, "");
 
 }  // namespace
 }  // namespace monograin::compressible

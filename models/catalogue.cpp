@@ -43,16 +43,16 @@ constexpr std::array k_functions{
 }  // namespace
 
 // Namespace and function of every model, in the order in which they are listed to users.
-#define MONOGRAIN_MODELS(MODEL)             \
-  MODEL(hertz, model)                       \
-  MODEL(mdr, model)                         \
-  MODEL(cel, model)                         \
-  MODEL(plastic, similarity_model)          \
-  MODEL(plastic, semimech_model)            \
-  MODEL(plastic, hardening_model)           \
-  MODEL(nonlocal, model)                    \
-  MODEL(compressible, contact_model)        \
-  MODEL(compressible, material_point_model) \
+#define MONOGRAIN_MODELS(MODEL)    \
+  MODEL(hertz, model)              \
+  MODEL(mdr, model)                \
+  MODEL(cel, model)                \
+  MODEL(plastic, similarity_model) \
+  MODEL(plastic, semimech_model)   \
+  MODEL(plastic, hardening_model)  \
+  MODEL(nonlocal, model)           \
+  MODEL(compressible, model)       \
+  MODEL(material_point, model)     \
   MODEL(packing, model)
 
 #define MONOGRAIN_DECLARE(folder, function) \

@@ -17,7 +17,7 @@
 
 #include "bindings.hpp"
 #include "cel/contact_law.hpp"
-#include "compressible/contact_law.hpp"
+#include "compressible/law.hpp"
 #include "compressible/regressions.hpp"
 #include "elastic/hertz.hpp"
 #include "elastic/line_contact.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "compressible/contact_law.hpp"
+#include "compressible/law.hpp"
 
 namespace monograin::compressible {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "compressible/contact_law.hpp"
+#include "compressible/law.hpp"
 #include "system/model.hpp"
 
 namespace monograin::compressible {

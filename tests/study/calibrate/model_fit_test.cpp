@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "compressible/contact_law.hpp"
+#include "compressible/law.hpp"
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
 #include "study/calibrate/calibration.hpp"
