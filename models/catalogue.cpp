@@ -42,22 +42,23 @@ constexpr std::array k_functions{
 
 }  // namespace
 
-// Namespace and function of every model, in the order in which they are listed to users.
-#define MONOGRAIN_MODELS(MODEL)    \
-  MODEL(hertz, model)              \
-  MODEL(mdr, model)                \
-  MODEL(cel, model)                \
-  MODEL(plastic, similarity_model) \
-  MODEL(plastic, semimech_model)   \
-  MODEL(plastic, hardening_model)  \
-  MODEL(nonlocal, model)           \
-  MODEL(compressible, model)       \
-  MODEL(material_point, model)     \
-  MODEL(packing, model)
+// Namespace of every model, in the order in which they are listed to users. It is the name of the model and of its
+// folder, with '_' for '-'.
+#define MONOGRAIN_MODELS(MODEL) \
+  MODEL(hertz)                  \
+  MODEL(mdr)                    \
+  MODEL(cel)                    \
+  MODEL(similarity)             \
+  MODEL(semimech)               \
+  MODEL(hardening)              \
+  MODEL(nonlocal)               \
+  MODEL(compressible)           \
+  MODEL(material_point)         \
+  MODEL(packing)
 
-#define MONOGRAIN_DECLARE(folder, function) \
-  namespace folder {                        \
-  Model function() noexcept;                \
+#define MONOGRAIN_DECLARE(folder) \
+  namespace folder {              \
+  Model model() noexcept;         \
   }
 MONOGRAIN_MODELS(MONOGRAIN_DECLARE)
 
@@ -90,7 +91,7 @@ std::string fault_of_names(const Model& model, const Items& items, const std::st
 }
 
 std::vector<Model>& all_models() {
-#define MONOGRAIN_CALL(folder, function) folder::function(),
+#define MONOGRAIN_CALL(folder) folder::model(),
   static std::vector<Model> models{MONOGRAIN_MODELS(MONOGRAIN_CALL)};
   return models;
 }

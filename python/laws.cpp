@@ -22,14 +22,16 @@
 #include "elastic/hertz.hpp"
 #include "elastic/line_contact.hpp"
 #include "elementwise.hpp"
+#include "hardening/law.hpp"
 #include "interruptible.hpp"
 #include "mdr/adhesion.hpp"
 #include "mdr/relaxed_profile.hpp"
 #include "mdr/transforms.hpp"
 #include "nonlocal/law.hpp"
 #include "packing/law.hpp"
-#include "plastic/law.hpp"
 #include "plastic/ludwik.hpp"
+#include "semimech/law.hpp"
+#include "similarity/law.hpp"
 #include "system/number_text.hpp"
 #include "system/resolution.hpp"
 
@@ -103,14 +105,15 @@ Value word(const std::string& given, std::initializer_list<std::pair<const char*
 
 /// Quantity of a contact between sphere and wall, in SI units; NaN outside the domain of the law, 0 without contact.
 /// @param quantity  contact_radius, mean_pressure, force or work
-double plastic_quantity(const plastic::Law& law, const std::string& quantity, double strength, double radius,
+template <class Law>
+double plastic_quantity(const Law& law, const std::string& quantity, double strength, double radius,
                         double displacement) {
+  using plastic::work_per_wall;
   const double x = displacement / radius;
   if (x <= 0.0) return 0.0;
-  if (quantity == "work")
-    return or_nan([&] { return plastic::work_per_wall(law, x); }) * strength * radius * radius * radius;
+  if (quantity == "work") return or_nan([&] { return work_per_wall(law, x); }) * strength * radius * radius * radius;
   return or_nan([&] {
-    const plastic::ContactState state = std::visit([x](const auto& made) { return plastic::state_at(made, x); }, law);
+    const plastic::ContactState state = state_at(law, x);
     if (quantity == "contact_radius") return state.contact_radius * radius;
     if (quantity == "mean_pressure") return state.pressure * strength;
     return state.force * strength * radius * radius;
@@ -122,9 +125,9 @@ Elementwise semimech(const std::string& quantity, const std::string& configurati
                      const Numbers& displacement) {
   const plastic::Configuration walls = plastic::configuration_named(configuration);
   return Elementwise(
-      [=, last = LastMade<plastic::Law, 3>()](double e, double nu, double y, double r, double d) mutable {
-        const plastic::Law& law = last.get(
-            {e, nu, y}, [&] { return plastic::make_semimech(plastic::make_semimech_material(e, nu, y), walls); });
+      [=, last = LastMade<semimech::Law, 3>()](double e, double nu, double y, double r, double d) mutable {
+        const semimech::Law& law = last.get(
+            {e, nu, y}, [&] { return semimech::make_law(semimech::make_material(e, nu, y), walls); });
         return plastic_quantity(law, quantity, y, r, d);
       },
       youngs_modulus, poisson_ratio, yield_stress, radius, displacement);
@@ -134,24 +137,24 @@ Elementwise hardening(const std::string& quantity, const std::string& configurat
                       const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
   const plastic::Configuration walls = plastic::configuration_named(configuration);
   return Elementwise(
-      [=, last = LastMade<plastic::Law, 1>()](double kappa, double mu, double r, double d) mutable {
-        return plastic_quantity(last.get({mu}, [&] { return plastic::make_hardening(mu, walls); }), quantity, kappa, r,
+      [=, last = LastMade<hardening::Law, 1>()](double kappa, double mu, double r, double d) mutable {
+        return plastic_quantity(last.get({mu}, [&] { return hardening::make_law(mu, walls); }), quantity, kappa, r,
                                 d);
       },
       strength, exponent, radius, displacement);
 }
 
-plastic::SimilarityRadius radius_rule(const std::string& given) {
-  using Rule = plastic::SimilarityRadius;
+similarity::RadiusRule radius_rule(const std::string& given) {
+  using Rule = similarity::RadiusRule;
   return word<Rule>(given, {{"parabolic", Rule::parabolic}, {"corrected", Rule::corrected}});
 }
 
 Elementwise similarity(const std::string& quantity, const std::string& rule, const Numbers& strength,
                        const Numbers& exponent, const Numbers& radius, const Numbers& displacement) {
-  const plastic::SimilarityRadius radius_law = radius_rule(rule);
+  const similarity::RadiusRule radius_law = radius_rule(rule);
   return Elementwise(
       [=](double kappa, double mu, double r, double d) {
-        return plastic_quantity(plastic::make_similarity(mu, radius_law), quantity, kappa, r, d);
+        return plastic_quantity(similarity::make_law(mu, radius_law), quantity, kappa, r, d);
       },
       strength, exponent, radius, displacement);
 }
@@ -162,14 +165,14 @@ Elementwise similarity(const std::string& quantity, const std::string& rule, con
 Elementwise similarity_pair(const std::string& quantity, const std::string& rule, const Numbers& strength,
                             const Numbers& exponent, const Numbers& first_radius, const Numbers& second_radius,
                             const Numbers& argument) {
-  const plastic::SimilarityRadius radius_law = radius_rule(rule);
+  const similarity::RadiusRule radius_law = radius_rule(rule);
   return Elementwise(
       [=](double kappa, double mu, double first, double second, double given) {
-        const plastic::SimilarityLaw law = plastic::make_similarity(mu, radius_law);
-        const plastic::SimilarityPair pair = plastic::make_similarity_pair(first, second);
-        if (quantity == "approach") return plastic::similarity_approach(law, pair, kappa, given);
-        if (quantity == "work") return plastic::similarity_work(law, pair, kappa, given);
-        const plastic::SimilarityContact contact = plastic::similarity_contact(law, pair, kappa, given);
+        const similarity::Law law = similarity::make_law(mu, radius_law);
+        const similarity::Pair pair = similarity::pair_of(first, second);
+        if (quantity == "approach") return similarity::pair_approach(law, pair, kappa, given);
+        if (quantity == "work") return similarity::pair_work(law, pair, kappa, given);
+        const similarity::PairContact contact = similarity::pair_contact(law, pair, kappa, given);
         return quantity == "force" ? contact.force : contact.contact_radius;
       },
       strength, exponent, first_radius, second_radius, argument);
@@ -471,7 +474,7 @@ void add_plastic(py::module_& laws) {
   laws.def("similarity", &similarity);
   laws.def("similarity_pair", &similarity_pair);
   laws.def("similarity_strength", elementwise(+[](double first, double second, double exponent) {
-             return plastic::similarity_strength(first, second, exponent);
+             return similarity::pair_strength(first, second, exponent);
            }));
   laws.def("ludwik_stress", elementwise(+[](double yield_stress, double strength, double exponent, double strain) {
              return plastic::ludwik_stress(

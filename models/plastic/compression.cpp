@@ -13,6 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
+constexpr std::array<std::string_view, 3> k_configurations{"simple", "die", "hydrostatic"};
 constexpr double k_contact_density = 0.0593;  // Gamma (text after eq. 2.30)
 
 /// T(z) of the fall for an angle z - s.
@@ -45,50 +46,17 @@ double inflexion_point(double rate, double exponent_excess, double shift) noexce
 }  // namespace
 
 std::string_view name(Configuration configuration) noexcept {
-  switch (configuration) {
-    case Configuration::simple:
-      return "simple";
-    case Configuration::die:
-      return "die";
-    case Configuration::hydrostatic:
-      return "hydrostatic";
-  }
-  return {};
+  return k_configurations[static_cast<std::size_t>(configuration)];
 }
 
 Configuration configuration_named(std::string_view word) {
-  for (const Configuration configuration : {Configuration::simple, Configuration::die, Configuration::hydrostatic}) {
-    if (name(configuration) == word) return configuration;
-  }
+  const auto found = std::ranges::find(k_configurations, word);
+  if (found != k_configurations.end()) return static_cast<Configuration>(found - k_configurations.begin());
   throw std::invalid_argument("configuration = '" + std::string(word) +
                               "' is not known; expected one of 'simple', 'die', 'hydrostatic'");
 }
 
 int moving_walls(Configuration configuration) noexcept { return configuration == Configuration::hydrostatic ? 6 : 2; }
-
-std::string_view name(Regime regime) noexcept {
-  switch (regime) {
-    case Regime::open:
-      return "open";
-    case Regime::elastic:
-      return "elastic";
-    case Regime::elastic_plastic:
-      return "elastic-plastic";
-    case Regime::fully_plastic:
-      return "fully-plastic";
-    case Regime::low_compressibility:
-      return "low-compressibility";
-    case Regime::elastic_volumetric:
-      return "elastic-volumetric";
-    case Regime::undefined:
-      return "undefined";
-    case Regime::unloading:
-      return "unloading";
-    case Regime::separated:
-      return "separated";
-  }
-  return {};
-}
 
 RadiusSeries rigid_radius_series(Configuration configuration) noexcept {
   constexpr RadiusSeries simple{.first = 1.7527, .third = 2.3702, .fifth = 3.3715};  // alpha_i
@@ -239,6 +207,11 @@ void require_approach_below(double x, double limit, Limit reason) {
   if (x < limit) return;
   throw DomainError(reason, "displacement/R0 = " + number_text(x) + " is not below " + number_text(limit) + ": " +
                                 std::string(sentence(reason)));
+}
+
+void require_exponent(double exponent) {
+  if (!(exponent >= 0.0 && exponent <= 1.0))
+    throw std::invalid_argument("the hardening exponent 1/m must be in [0, 1], but is " + number_text(exponent));
 }
 
 }  // namespace monograin::plastic

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <boost/container/static_vector.hpp>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/roots.hpp>
@@ -34,6 +35,10 @@ enum class Configuration { simple, die, hydrostatic };
 /// @throws std::invalid_argument for another word
 [[nodiscard]] Configuration configuration_named(std::string_view word);
 [[nodiscard]] int moving_walls(Configuration configuration) noexcept;
+/// True if walls surround the particle, so that its pores close.
+[[nodiscard]] constexpr bool is_enclosed(Configuration configuration) noexcept {
+  return configuration != Configuration::simple;
+}
 
 /// Regimes, in the order in which a contact passes them. The source has no law for `undefined`, nor for the last two,
 /// which belong to contacts that have been unloaded.
@@ -49,7 +54,14 @@ enum class Regime {
   separated
 };
 
-[[nodiscard]] std::string_view name(Regime regime) noexcept;
+/// Words of the regimes, in their order.
+inline constexpr std::array<std::string_view, 9> k_regimes{
+    "open",      "elastic",   "elastic-plastic", "fully-plastic", "low-compressibility", "elastic-volumetric",
+    "undefined", "unloading", "separated"};
+
+[[nodiscard]] constexpr std::string_view name(Regime regime) noexcept {
+  return k_regimes[static_cast<std::size_t>(regime)];
+}
 
 /// State of one contact at a given x. Everything is 0 without contact.
 struct ContactState {
@@ -72,14 +84,6 @@ struct Boundary {
 /// Boundaries in ascending order; no law has more than four. The vector does not allocate, because every instant of a
 /// run inverts forces with it.
 using Boundaries = boost::container::static_vector<Boundary, 4>;
-
-/// A quantity outside the range over which the source fitted its constants.
-struct OutOfRange {
-  std::string_view quantity;
-  double value = 0.0;
-  double lower = 0.0;
-  double upper = 0.0;
-};
 
 /// A function's value and its derivative with respect to x.
 struct ValueAndSlope {
@@ -240,7 +244,18 @@ template <class Force>
   return boost::math::quadrature::gauss<double, 30>::integrate(integrand, root(s - b), root(s - a));
 }
 
+/// Work of one wall over S R^3 from first touch to x, for laws that know the work of all moving walls.
+/// @throws std::domain_error as work() of the law
+template <class Law>
+[[nodiscard]] double work_per_wall(const Law& law, double x) {
+  return work(law, x) / moving_walls(law.configuration);
+}
+
 /// @throws std::domain_error unless x is below the limit; also for NaN
 void require_approach_below(double x, double limit, Limit reason);
+
+/// @param exponent  mu = 1/m of a power law
+/// @throws std::invalid_argument unless it is in [0, 1]
+void require_exponent(double exponent);
 
 }  // namespace monograin::plastic

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -87,6 +89,23 @@ TEST(Rooms, ModelsIncludeOnlyModels) {
       EXPECT_TRUE(fs::exists(fs::path(MONOGRAIN_SOURCE_DIR) / "models" / header)) << file << " includes " << header;
     }
   });
+}
+
+TEST(Rooms, FoldersOfModelsIncludeEachOtherInOneDirection) {
+  const auto folder_of = [](const std::string& path) { return path.substr(0, path.find('/')); };
+  std::map<std::string, std::set<std::string>> needed;
+  for_each_source("models", [&](const std::string& file, const std::vector<std::string>& included) {
+    std::set<std::string>& of_file = needed[folder_of(file)];
+    for (const std::string& header : included) {
+      if (folder_of(header) != folder_of(file)) of_file.insert(folder_of(header));
+    }
+  });
+  // What needs nothing that is left leaves; a circle stays.
+  const auto needs_none_left = [&](const auto& entry) {
+    return std::ranges::none_of(entry.second, [&](const std::string& folder) { return needed.contains(folder); });
+  };
+  while (std::erase_if(needed, needs_none_left) > 0) continue;
+  for (const auto& [folder, others] : needed) ADD_FAILURE() << "models/" << folder << " includes what includes it";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <set>
 #include <string_view>
@@ -51,6 +52,13 @@ using Names = std::set<string_view>;
 TEST(Catalogue, FindsEveryModelByItsName) {
   ASSERT_FALSE(model_catalogue().empty());
   for (const Model& model : model_catalogue()) EXPECT_EQ(find_model(model.name), &model) << model.name;
+}
+
+TEST(Catalogue, HasAFolderOfTheNameOfEveryModel) {
+  for (const Model& model : model_catalogue()) {
+    const auto folder = std::filesystem::path(MONOGRAIN_SOURCE_DIR) / "models" / model.name;
+    EXPECT_TRUE(std::filesystem::exists(folder / "model.cpp")) << model.name;
+  }
 }
 
 TEST(Catalogue, HasNoModelOfAnUnknownName) {

@@ -24,8 +24,8 @@ inline constexpr std::array k_configurations{Configuration::simple, Configuratio
 inline std::ostream& operator<<(std::ostream& out, Configuration configuration) { return out << name(configuration); }
 inline std::ostream& operator<<(std::ostream& out, Regime regime) { return out << name(regime); }
 
-inline Table reference(const std::string& file) {
-  return read_csv(MONOGRAIN_SOURCE_DIR "/tests/models/plastic/reference/" + file + ".csv");
+inline Table reference(const std::string& folder, const std::string& file) {
+  return read_csv(MONOGRAIN_SOURCE_DIR "/tests/models/" + folder + "/reference/" + file + ".csv");
 }
 
 /// The number at the beginning of a header line; a unit may follow.

@@ -4,7 +4,6 @@
 #include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-#include <limits>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -15,7 +14,8 @@
 
 #include "models/accuracy.hpp"
 #include "models/plastic/cases.hpp"
-#include "plastic/model.hpp"
+#include "plastic/power_law.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::plastic {
 
@@ -29,8 +29,6 @@ static std::ostream& operator<<(std::ostream& out, const LudwikMaterial& materia
 namespace monograin::plastic::ludwik_test {
 namespace {
 
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr LudwikMaterial k_lead{
     .youngs_modulus = 1e4, .yield_stress = 5.0, .hardening = 15.5, .exponent_inverse = 2.857};  // MPa
 constexpr std::array k_fits{HollomonFit::both, HollomonFit::exponent};
@@ -64,7 +62,7 @@ double difference(const LudwikMaterial& material, double range, double strength,
 }
 
 TEST(LudwikFit, AgreesWithTheReference) {
-  const Table table = reference("ludwik_hollomon");
+  const Table table = reference("plastic", "ludwik_hollomon");
   ASSERT_EQ(table.row_count(), 12u);
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const LudwikMaterial material{.youngs_modulus = number(table, row, "E"),
@@ -227,12 +225,12 @@ TEST(LudwikStress, IsYieldStressPlusAPower) {
 
 TEST(LudwikOfAScenario, IsFittedOverATotalStrainThatDependsOnYoungsModulus) {
   const auto fit = [](double youngs_modulus) {
-    return hardening_model().power_law_of({.youngs_modulus = youngs_modulus,
-                                           .yield_stress = 5e6,
-                                           .strength = 15.5e6,
-                                           .exponent = 0.35,
-                                           .largest_strain = 1.0,
-                                           .fits_both = true});
+    return power_law_of({.youngs_modulus = youngs_modulus,
+                         .yield_stress = 5e6,
+                         .strength = 15.5e6,
+                         .exponent = 0.35,
+                         .largest_strain = 1.0,
+                         .fits_both = true});
   };
   EXPECT_NEAR(fit(10e9).exponent, 0.2299, 5e-5);
   EXPECT_NEAR(fit(1e9).exponent, 0.2441, 5e-5);

@@ -10,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "hardening/law.hpp"
 #include "models/plastic/cases.hpp"
 #include "models/plastic/scenarios.hpp"
-#include "plastic/hardening.hpp"
+#include "plastic/model_of.hpp"
+#include "scenario/model_input.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::plastic::reference_runs_test {
@@ -30,9 +32,12 @@ std::ostream& operator<<(std::ostream& out, const Errors& e) {
 
 enum class Scale { own, largest };  ///< errors over each value, or over the column's largest
 
+/// Files of both laws: the elastic-plastic ones (ep_) of semimech, the rigid-plastic ones (rp_) of hardening.
+std::string folder_of(const std::string& file) { return file.starts_with("ep_") ? "semimech" : "hardening"; }
+
 class ReferenceCurve : public ::testing::TestWithParam<std::string> {
  protected:
-  ReferenceCurve() : table_(reference(GetParam())) {
+  ReferenceCurve() : table_(reference(folder_of(GetParam()), GetParam())) {
     const std::string file = GetParam();
     const auto configuration = file.find("_die_") != std::string::npos           ? monograin::Configuration::die
                                : file.find("_hydrostatic_") != std::string::npos ? monograin::Configuration::hydrostatic
@@ -44,18 +49,13 @@ class ReferenceCurve : public ::testing::TestWithParam<std::string> {
     } else {
       scenario_ = hardening_scenario(configuration, 1.0, header_number(table_, "inv_m"), {});
       // A run ends at the margin before the filled cell.
-      const auto law = make_hardening(scenario_.material.at("hardening_exponent"), configuration_of(configuration));
+      const auto law =
+          hardening::make_law(scenario_.material.at("hardening_exponent"), configuration_of(model_input(scenario_)));
       if (configuration != monograin::Configuration::simple) {
         singular_ = law.zero_porosity;
-        end_ = law.zero_porosity * (1.0 - 2.0 * k_zero_porosity_margin);
+        end_ = law.zero_porosity * (1.0 - 2.0 * hardening::k_zero_porosity_margin);
       }
     }
-  }
-
-  static Configuration configuration_of(monograin::Configuration configuration) {
-    return configuration == monograin::Configuration::die           ? Configuration::die
-           : configuration == monograin::Configuration::hydrostatic ? Configuration::hydrostatic
-                                                                    : Configuration::simple;
   }
 
   [[nodiscard]] std::vector<double> expected(std::string_view begin, double factor = 1.0) const {
@@ -136,10 +136,12 @@ TEST_P(ReferenceCurve, IsMetByIntegrators) {
 
 std::vector<std::string> curve_files() {
   std::vector<std::string> files;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(MONOGRAIN_SOURCE_DIR "/tests/models/plastic/reference")) {
-    const std::string name = entry.path().stem().string();
-    if (name.starts_with("ep_") || name.starts_with("rp_")) files.push_back(name);
+  for (const char* folder : {"semimech", "hardening"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(MONOGRAIN_SOURCE_DIR "/tests/models/" +
+                                                                 std::string(folder) + "/reference")) {
+      const std::string name = entry.path().stem().string();
+      if (name.starts_with("ep_") || name.starts_with("rp_")) files.push_back(name);
+    }
   }
   std::ranges::sort(files);
   return files;

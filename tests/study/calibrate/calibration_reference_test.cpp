@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
+#include "hardening/law.hpp"
 #include "history/run.hpp"
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
-#include "plastic/hardening.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -91,13 +91,13 @@ TEST_F(HardeningCalibration, MeetsFitsComputedElsewhere) {
 TEST_F(HardeningCalibration, PassesOverTheSecondMinimumNearNoHardeningFromAnyStart) {
   // The contact radius has a term in mu^0.4616, which makes a second minimum of the cost near mu = 0.
   for (const double exponent : {0.03, 0.05}) {
-    const auto law = plastic::make_hardening(exponent, plastic::Configuration::simple);
+    const auto law = hardening::make_law(exponent, plastic::Configuration::simple);
     std::mt19937_64 generator(7);
     std::normal_distribution noise(0.0, 0.001);
     std::string data = "gamma_over_2R[-],P[N]\n";
     for (int k = 1; k <= 40; ++k) {
       const double x = 0.0125 * k;
-      const double force = plastic::state_at(law, x).force * 5e6 * 1e-8 * (1.0 + noise(generator));
+      const double force = state_at(law, x).force * 5e6 * 1e-8 * (1.0 + noise(generator));
       data += fmt::format("{:.17g},{:.17g}\n", x, force);
     }
     const std::string file = write("d.csv", data).string();

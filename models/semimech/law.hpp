@@ -12,19 +12,36 @@
 
 #include "plastic/compression.hpp"
 
-namespace monograin::plastic {
+namespace monograin::semimech {
+
+using plastic::Boundaries;
+using plastic::Boundary;
+using plastic::Configuration;
+using plastic::ContactState;
+using plastic::PressureFall;
+using plastic::RadiusSeries;
+using plastic::Regime;
+using plastic::ValueAndSlope;
 
 /// The two ratios of a material on which the law depends.
-struct SemimechMaterial {
+struct Material {
   double modulus_over_yield = 0.0;  ///< lambda = E/((1-nu^2) Y)
   double bulk_over_yield = 0.0;     ///< zeta = E/(3 (1-2nu) Y); infinity for nu = 0.5
 };
 
 /// @throws std::invalid_argument unless E > 0 and Y > 0, both finite, and nu in (-1, 0.5]
-[[nodiscard]] SemimechMaterial make_semimech_material(double youngs_modulus, double poisson_ratio, double yield_stress);
+[[nodiscard]] Material make_material(double youngs_modulus, double poisson_ratio, double yield_stress);
 
 /// Least lambda at which the elastic-plastic branch can end with the slope zero (c2 = 1); printed as 22.08.
 constexpr double k_least_modulus_over_yield = 22.093089842902306;
+
+/// A quantity outside the range over which the source fitted its constants.
+struct OutOfRange {
+  std::string_view quantity;
+  double value = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+};
 
 /// True for a ratio inside a fitted range, or outside of it by round-off of the products it is made of.
 [[nodiscard]] bool is_in_fitted_range(double value, double lower, double upper) noexcept;
@@ -51,9 +68,9 @@ struct Stiffening {
 };
 
 /// A material's derived parameters in one configuration.
-struct SemimechLaw {
+struct Law {
   Configuration configuration = Configuration::simple;
-  SemimechMaterial material{};
+  Material material{};
   RadiusSeries radius{};             ///< D_i (eq. 2.14)
   double yield_approach = 0.0;       ///< x_y (eq. 2.17), where H = 1.1
   double yield_logarithm = 0.0;      ///< ln(x_Hmax/x_y)
@@ -64,84 +81,50 @@ struct SemimechLaw {
   double calibrated_end = 0.0;       ///< x up to which the source compares the law: 0.5 (simple), x_zp + 0.01
   boost::container::static_vector<double, 4> boundary_forces{};  ///< P/(Y R^2) at each of boundaries()
   static constexpr double limit = 1.0;                           ///< x at which the walls meet; the law ends before
+  static constexpr Regime first_regime = Regime::elastic;
+
+  /// Power of x with which the force begins.
+  [[nodiscard]] static constexpr double first_power() noexcept { return 1.5; }
+  /// True where work is a quadrature of 30 forces; of polynomials it is not.
+  [[nodiscard]] static constexpr bool is_work_costly(Regime regime) noexcept {
+    return regime != Regime::elastic && regime != Regime::elastic_volumetric;
+  }
 };
 
 /// @throws std::invalid_argument naming the numbers for lambda below its least value, and for zeta that is not finite
 /// or so small that the particle would not fill its cell before x = 1 (die, hydrostatic)
-[[nodiscard]] SemimechLaw make_semimech(const SemimechMaterial& material, Configuration configuration);
+[[nodiscard]] Law make_law(const Material& material, Configuration configuration);
 
 /// Regime boundaries in ascending order: `yield`, `fully-plastic`, and for enclosed particles `low-compressibility`,
 /// `zero-porosity`. The last regime goes on to the limit.
-[[nodiscard]] Boundaries boundaries(const SemimechLaw& law);
+[[nodiscard]] Boundaries boundaries(const Law& law);
 
 /// Regime at x. A boundary belongs to the regime before it; x <= 0 is open.
-[[nodiscard]] Regime regime_at(const SemimechLaw& law, double x) noexcept;
+[[nodiscard]] Regime regime_at(const Law& law, double x) noexcept;
 
 /// State of a contact at x.
 /// @throws std::domain_error for x >= 1 and NaN
-[[nodiscard]] ContactState state_at(const SemimechLaw& law, double x);
+[[nodiscard]] ContactState state_at(const Law& law, double x);
 
 /// State of a contact by the formulas of one regime, also somewhat outside of it, for trial steps. The formulas are
 /// continued analytically. Those with an infinite second derivative at x_Hmax continue as their mirror image, and low
 /// compressibility along its tangent a little beyond zero porosity.
 /// @throws std::domain_error for x <= 0 (but open), a regime that the configuration does not have, and low
 /// compressibility farther beyond zero porosity
-[[nodiscard]] ContactState state_in(const SemimechLaw& law, Regime regime, double x);
+[[nodiscard]] ContactState state_in(const Law& law, Regime regime, double x);
 
 /// x under a force over Y R^2; 0 for no force.
 /// @param near  initial guess of x; 0: none is known
 /// @throws std::domain_error for forces that the law does not reach below its limit
-[[nodiscard]] double approach_under(const SemimechLaw& law, double force, double near = 0.0);
-
-/// x at which the contacts reach each other. Die and hydrostatic compression only.
-/// @throws std::invalid_argument for simple compression
-[[nodiscard]] double impingement_approach(const SemimechLaw& law);
+[[nodiscard]] double approach_under(const Law& law, double force, double near = 0.0);
 
 /// Work of one wall over Y R^3 from the beginning of a regime to x: int P dx. Relative error of the sum below 1e-12.
 /// @throws std::domain_error as state_in
-[[nodiscard]] double work_in(const SemimechLaw& law, Regime regime, double x);
+[[nodiscard]] double work_in(const Law& law, Regime regime, double x);
 
 /// Work of all moving walls over Y R^3 from first touch to x: n int_0^x P dx over their number n.
 /// Relative error below 1e-12.
 /// @throws std::domain_error as state_at
-[[nodiscard]] double work(const SemimechLaw& law, double x);
+[[nodiscard]] double work(const Law& law, double x);
 
-// --- Lateral contacts of the die (section 2.6). They bear a load of their own but do not act back on the moving walls,
-// and do no work.
-
-/// Constants of the lateral contacts. Their displacement x_s = tau x^omega was fitted with both displacements in
-/// millimetres for R = 10 mm (eqs. 2.49-2.51); tau is made dimensionless here.
-struct LateralLaw {
-  double log_coefficient = 0.0;                   ///< ln tau
-  double exponent = 0.0;                          ///< omega
-  double yield_approach = 0.0;                    ///< x at which a lateral contact yields
-  double onset = 0.0;                             ///< x from which all contacts bear the same pressure
-  static constexpr double small_range_end = 0.1;  ///< x up to which x_s is fitted
-};
-
-/// Range of lambda over which the lateral contacts were fitted.
-constexpr double k_least_lateral_modulus_over_yield = 163.08;
-constexpr double k_greatest_lateral_modulus_over_yield = 4954.40;
-
-/// @throws std::invalid_argument unless the law is that of the die
-[[nodiscard]] LateralLaw make_lateral(const SemimechLaw& law);
-
-/// x at which all contacts begin to bear the same pressure. For its own five materials, Table 2.4, which comes from
-/// computed contact areas. For other materials, 0.409833 + 4.03e-4 (lambda/1000)^(-1.4956), with lambda limited to the
-/// table's range; this formula meets the table within 8.3e-5.
-[[nodiscard]] double lateral_onset(double modulus_over_yield) noexcept;
-
-/// x_s and dx_s/dx, for x > 0.
-[[nodiscard]] ValueAndSlope lateral_approach(const LateralLaw& lateral, double x) noexcept;
-
-/// Ends of a lateral contact's regimes, in terms of the primary x: `yield`, the end of the small range and zero
-/// porosity (no events of the lateral contact: empty names), and `secondary-onset`. `undefined` between the two ranges.
-[[nodiscard]] Boundaries boundaries(const SemimechLaw& law, const LateralLaw& lateral);
-
-/// State of a lateral contact by the formulas of one regime, with derivatives with respect to the primary x > 0.
-/// `elastic` and `elastic_plastic`: that of a primary contact at x_s. `low_compressibility` and `elastic_volumetric`:
-/// the pressure of the primary contacts, everything else NaN. `undefined`: NaN.
-/// @throws std::domain_error as state_in
-[[nodiscard]] ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral, Regime regime, double x);
-
-}  // namespace monograin::plastic
+}  // namespace monograin::semimech

@@ -1,4 +1,4 @@
-#include "plastic/hardening.hpp"
+#include "hardening/law.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,21 +18,22 @@
 #include "models/accuracy.hpp"
 #include "models/plastic/cases.hpp"
 #include "system/number_text.hpp"
+#include "system/resolution.hpp"
 
-namespace monograin::plastic::hardening_test {
+namespace monograin::hardening::law_test {
 namespace {
+
+using namespace plastic;
 
 using std::numbers::pi;
 
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
 constexpr std::array k_enclosed{Configuration::die, Configuration::hydrostatic};
 constexpr std::array k_conditions{MinimumCondition::current, MinimumCondition::ideal};
 
 /// All exponents of the source's calculations.
 std::vector<double> exponents_of_the_source() {
   std::vector<double> exponents;
-  const Table table = reference("table_E1");
+  const Table table = reference("hardening", "table_E1");
   for (std::size_t row = 0; row < table.row_count(); ++row) exponents.push_back(number(table, row, "inv_m"));
   return exponents;
 }
@@ -51,24 +52,23 @@ struct RandomExponents {
   }
 };
 
-std::vector<Stretch> stretches_of(const HardeningLaw& law) {
+std::vector<Stretch> stretches_of(const Law& law) {
   return stretches(law, Regime::fully_plastic, std::nextafter(law.limit, 0.0));
 }
 
 /// Relative error of the distance to zero porosity due to the round-off of both.
-double round_off_of_distance(const HardeningLaw& law, double x) {
+double round_off_of_distance(const Law& law, double x) {
   return law.configuration == Configuration::simple ? 0.0 : 0.25 * k_epsilon / (law.zero_porosity - x);
 }
 
 // --- derived parameters
 
 TEST(HardeningParameters, AgreeWithFiftyDigits) {
-  const Table table = reference("parameters_rigid_plastic");
+  const Table table = reference("hardening", "parameters_rigid_plastic");
   ASSERT_EQ(table.row_count(), 24u);
   int compared = 0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const HardeningLaw law =
-        make_hardening(number(table, row, "inv_m"), configuration_named(word(table, row, "configuration")));
+    const Law law = make_law(number(table, row, "inv_m"), configuration_named(word(table, row, "configuration")));
     const auto expect = [&](std::string_view column, double actual, double scale = 0.0) {
       const double expected = number(table, row, column);
       if (std::isnan(expected)) return;
@@ -104,7 +104,7 @@ TEST(HardeningParameters, AgreeWithFiftyDigits) {
 TEST(HardeningParameters, HaveThePrintedCoefficientsWithoutHardening) {
   // Table 3.1 to the digits of its constants; its 39.8654 for the last one contradicts the printed discriminants.
   const auto expect = [](Configuration configuration, double first, double third, double fifth) {
-    const HardeningLaw law = make_hardening(0.0, configuration);
+    const Law law = make_law(0.0, configuration);
     EXPECT_NEAR(law.radius.first, first, 5e-7) << configuration;
     EXPECT_NEAR(law.radius.third, third, 5e-7) << configuration;
     EXPECT_NEAR(law.radius.fifth, fifth, 5e-7) << configuration;
@@ -119,7 +119,7 @@ TEST(HardeningParameters, LetTheContactRadiusGrowWhateverTheExponent) {
   const auto largest = [](Configuration configuration) {
     double value = -20.0;
     for (int i = 0; i <= 1000; ++i) {
-      const auto [d1, d3, d5] = make_hardening(1e-3 * i, configuration).radius;
+      const auto [d1, d3, d5] = make_law(1e-3 * i, configuration).radius;
       value = std::max(value, 9.0 * d3 * d3 / (d1 * d5) - 20.0);
     }
     return value;
@@ -135,7 +135,7 @@ TEST(HardeningParameters, PutTheLeastPressureBeforeZeroPorosity) {
     const double exponent = random();
     for (const Configuration configuration : k_enclosed) {
       for (const MinimumCondition condition : k_conditions) {
-        const HardeningLaw law = make_hardening(exponent, configuration, condition);
+        const Law law = make_law(exponent, configuration, condition);
         ASSERT_GT(law.fall.end, 0.0) << "1/m = " << exponent << ", " << configuration;
         ASSERT_LT(law.fall.end, law.zero_porosity) << "1/m = " << exponent << ", " << configuration;
         ASSERT_GT(law.pressure_scale, 0.0) << "1/m = " << exponent << ", " << configuration;
@@ -149,10 +149,9 @@ TEST(HardeningParameters, PutTheLeastPressureBeforeZeroPorosity) {
 class HardeningCurve : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(HardeningCurve, AgreesWithFiftyDigits) {
-  const Table table = reference(std::string("rp_") + GetParam());
+  const Table table = reference("hardening", std::string("rp_") + GetParam());
   ASSERT_GT(table.row_count(), 35u);
-  const HardeningLaw law =
-      make_hardening(header_number(table, "inv_m"), configuration_named(table.header_value("configuration")));
+  const Law law = make_law(header_number(table, "inv_m"), configuration_named(table.header_value("configuration")));
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const double x = number(table, row, "gamma_over_2R");
     const ContactState state = state_at(law, x);
@@ -194,7 +193,7 @@ TEST(HardeningJoints, AreSmooth) {
   for (const double exponent : exponents) {
     for (const Configuration configuration : k_enclosed) {
       for (const MinimumCondition condition : k_conditions) {
-        const HardeningLaw law = make_hardening(exponent, configuration, condition);
+        const Law law = make_law(exponent, configuration, condition);
         const JointError error = joint_error(law, stretches_of(law));
         ASSERT_LE(error.pressure, 2e-15) << "1/m = " << exponent << ", " << configuration;  // found: 7.0e-16
         ASSERT_LE(error.slope, 1e-15) << "1/m = " << exponent << ", " << configuration;     // found: 2.8e-16
@@ -207,7 +206,7 @@ TEST(HardeningJoints, AreSmooth) {
 TEST(HardeningJoints, BearThePressuresThatDefineThem) {
   for (const double exponent : exponents_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       const double end = std::min(law.fall.end, std::nextafter(law.limit, 0.0));
       const double factor = std::pow(end, 0.5 * exponent);
       EXPECT_LE(relative_error(state_at(law, end).pressure, law.fall.least * factor), 4 * k_epsilon)
@@ -230,7 +229,7 @@ TEST(HardeningReducedPressure, FallsBelowTheExponentAtWhichItsGreatestValueIsOne
   const double turn = std::log(3.101) / 1.748;
   for (const double exponent : {0.0, 0.1, 0.327, turn - 1e-4, turn + 1e-4, 0.6585, 1.0}) {
     for (const Configuration configuration : k_configurations) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       const double sign = exponent < turn ? 1.0 : -1.0;
       EXPECT_GT(sign * law.fall.amplitude, 0.0) << "1/m = " << exponent << ", " << configuration;
       EXPECT_GT(sign * (law.fall.greatest - law.fall.least), 0.0) << "1/m = " << exponent << ", " << configuration;
@@ -246,13 +245,13 @@ TEST(HardeningReducedPressure, FallsBelowTheExponentAtWhichItsGreatestValueIsOne
       }
     }
   }
-  EXPECT_NEAR(make_hardening(0.6585, Configuration::simple).fall.greatest, 0.98085, 5e-6);
-  EXPECT_NEAR(make_hardening(0.6585, Configuration::simple).fall.amplitude, -0.0191, 5e-5);
+  EXPECT_NEAR(make_law(0.6585, Configuration::simple).fall.greatest, 0.98085, 5e-6);
+  EXPECT_NEAR(make_law(0.6585, Configuration::simple).fall.amplitude, -0.0191, 5e-5);
 }
 
 /// The x at which the mean pressure is least between its first maximum and the end of its fall; 0 if it only rises.
 double least_mean_pressure_approach(double exponent, Configuration configuration) {
-  const HardeningLaw law = make_hardening(exponent, configuration);
+  const Law law = make_law(exponent, configuration);
   double least = 0.0;
   for (int k = 1; k < 2000; ++k) {
     const double x = law.fall.end * k / 2000.0;
@@ -263,7 +262,7 @@ double least_mean_pressure_approach(double exponent, Configuration configuration
 
 TEST(HardeningMeanPressure, IsLeastBeforeTheEventOfTheReducedOneAndOnlyForSmallExponents) {
   EXPECT_NEAR(least_mean_pressure_approach(0.1, Configuration::die), 0.191, 5e-4);
-  EXPECT_NEAR(make_hardening(0.1, Configuration::die).fall.end, 0.320, 5e-4);
+  EXPECT_NEAR(make_law(0.1, Configuration::die).fall.end, 0.320, 5e-4);
   // Exponents from which on the mean pressure rises throughout.
   for (const auto& [configuration, exponent] :
        {std::pair(Configuration::simple, 0.330), std::pair(Configuration::die, 0.322),
@@ -276,7 +275,7 @@ TEST(HardeningMeanPressure, IsLeastBeforeTheEventOfTheReducedOneAndOnlyForSmallE
 TEST(HardeningMeanPressure, RisesWhilePoresCloseWhateverTheExponent) {
   for (const double exponent : {0.0, 0.1, 0.327, 0.6585, 1.0}) {
     for (const Configuration configuration : k_enclosed) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       for (int k = 1; k < 100; ++k) {
         const double x = law.fall.end + 1e-2 * k * (law.zero_porosity - law.fall.end);
         EXPECT_GT(state_at(law, x).pressure_by_approach, 0.0) << "1/m = " << exponent << ", " << configuration;
@@ -290,7 +289,7 @@ TEST(HardeningMeanPressure, RisesWhilePoresCloseWhateverTheExponent) {
 TEST(HardeningDerivatives, AgreeWithDifferences) {
   for (const double exponent : exponents_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         for (const double share : {0.001, 0.1, 0.35, 0.6, 0.9, 0.99}) {
           const double x = std::lerp(begin, end, share);
@@ -324,7 +323,7 @@ TEST(HardeningForce, RisesAndIsFiniteEverywhere) {
   for (int i = 0; i < 10000; ++i) exponents.push_back(random());
   for (const double exponent : exponents) {
     for (const Configuration configuration : k_configurations) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         for (int k = 0; k < 6; ++k) {
           // The first two positions are at the regime's ends, which may be zero porosity and first touch.
@@ -346,7 +345,7 @@ TEST(HardeningForce, RisesAndIsFiniteEverywhere) {
 TEST(HardeningForce, IsAPowerOfTheApproachForSmallContacts) {
   for (const double exponent : exponents_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       const double first = rigid_radius_series(configuration).first;
       for (const double x : {1e-14, 1e-12, 1e-9, 1e-7}) {
         const double expected = pi * 3.101 * std::exp(-1.748 * exponent) * first * first * std::exp(-0.97 * exponent) *
@@ -370,8 +369,8 @@ TEST(HardeningMinimum, DiffersByAsMuchAsTheTwoContactRadii) {
        {Row{0.1, 0.0579981, 0.0730552}, Row{0.3, 0.0678788, 0.0723935}, Row{0.6585, 0.154849, 0.115827},
         Row{1.0, 0.354924, 0.258762}}) {
     const auto difference = [mu = exponent](Configuration configuration, double x) {
-      const double ideal = state_at(make_hardening(mu, configuration, MinimumCondition::ideal), x).pressure;
-      return ideal / state_at(make_hardening(mu, configuration), x).pressure - 1.0;
+      const double ideal = state_at(make_law(mu, configuration, MinimumCondition::ideal), x).pressure;
+      return ideal / state_at(make_law(mu, configuration), x).pressure - 1.0;
     };
     EXPECT_NEAR(difference(Configuration::die, 0.45), in_die, 5e-7) << "1/m = " << exponent;
     EXPECT_NEAR(difference(Configuration::hydrostatic, 0.19), under_hydrostatic, 5e-7) << "1/m = " << exponent;
@@ -380,7 +379,7 @@ TEST(HardeningMinimum, DiffersByAsMuchAsTheTwoContactRadii) {
 
 TEST(HardeningMinimum, LetsThePressureFallWithTheExponentForTheActualContactRadiusOnly) {
   const auto pressure = [](double exponent, MinimumCondition condition) {
-    return state_at(make_hardening(exponent, Configuration::die, condition), 0.475).pressure;
+    return state_at(make_law(exponent, Configuration::die, condition), 0.475).pressure;
   };
   EXPECT_NEAR(pressure(0.66, MinimumCondition::current), 3.49, 5e-3);
   EXPECT_NEAR(pressure(1.0, MinimumCondition::current), 3.05, 5e-3);
@@ -390,11 +389,9 @@ TEST(HardeningMinimum, LetsThePressureFallWithTheExponentForTheActualContactRadi
 
 TEST(HardeningMinimum, IsThatOfTheSameSeriesWithoutHardening) {
   for (const Configuration configuration : k_enclosed) {
-    EXPECT_EQ(make_hardening(0.0, configuration, MinimumCondition::ideal).fall.end,
-              make_hardening(0.0, configuration).fall.end);
-    EXPECT_EQ(make_hardening(0.7, configuration, MinimumCondition::ideal).fall.end,
-              make_hardening(0.0, configuration).fall.end);
-    EXPECT_GT(make_hardening(0.7, configuration).fall.end, make_hardening(0.0, configuration).fall.end);
+    EXPECT_EQ(make_law(0.0, configuration, MinimumCondition::ideal).fall.end, make_law(0.0, configuration).fall.end);
+    EXPECT_EQ(make_law(0.7, configuration, MinimumCondition::ideal).fall.end, make_law(0.0, configuration).fall.end);
+    EXPECT_GT(make_law(0.7, configuration).fall.end, make_law(0.0, configuration).fall.end);
   }
 }
 
@@ -402,17 +399,14 @@ TEST(HardeningMinimum, IsThatOfTheSameSeriesWithoutHardening) {
 
 TEST(HardeningImpingement, IsWhereTheContactReachesTheEdgeOfItsFace) {
   for (const double exponent : exponents_of_the_source()) {
-    const HardeningLaw die = make_hardening(exponent, Configuration::die);
-    const double in_die = impingement_approach(die);
+    const Law die = make_law(exponent, Configuration::die);
+    const double in_die = impingement_approach(die.configuration, die.radius);
     EXPECT_LE(relative_error(state_at(die, in_die).contact_radius, 1.0), 4 * k_epsilon) << "1/m = " << exponent;
-    const HardeningLaw press = make_hardening(exponent, Configuration::hydrostatic);
-    const double under_hydrostatic = impingement_approach(press);
+    const Law press = make_law(exponent, Configuration::hydrostatic);
+    const double under_hydrostatic = impingement_approach(press.configuration, press.radius);
     EXPECT_LE(relative_error(state_at(press, under_hydrostatic).contact_radius, 1.0 - under_hydrostatic), 4 * k_epsilon)
         << "1/m = " << exponent;
   }
-  const std::string message =
-      refusal<std::invalid_argument>([] { return impingement_approach(make_hardening(0.5, Configuration::simple)); });
-  EXPECT_TRUE(contains(message, "die")) << message;
 }
 
 // --- the force's inverse
@@ -422,7 +416,7 @@ TEST(HardeningInverse, FindsTheApproachAgain) {
   for (int i = 0; i < 2000; ++i) {
     const double exponent = random();
     for (const Configuration configuration : k_configurations) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         for (const double x : {uniform(random.generator, begin, end), begin + 1e-9 * (end - begin), end,
                                log_uniform(random.generator, 1e-60, 1e-2)}) {
@@ -437,7 +431,7 @@ TEST(HardeningInverse, FindsTheApproachAgain) {
 TEST(HardeningInverse, TakesTheSmallestForces) {
   for (const double exponent : {0.0, 0.3, 1.0}) {
     for (const Configuration configuration : k_configurations) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       EXPECT_EQ(approach_under(law, 0.0), 0.0);
       EXPECT_EQ(approach_under(law, -1.0), 0.0);
       for (const double force : {1e-300, 1e-100, 1e-30, 1e-12}) {
@@ -452,7 +446,7 @@ TEST(HardeningInverse, TakesTheSmallestForces) {
 TEST(HardeningInverse, RefusesForcesBeyondTheLimit) {
   for (const double exponent : {0.0, 0.6585, 1.0}) {
     for (const Configuration configuration : k_configurations) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       const double last = std::nextafter(law.limit, 0.0);
       const double greatest = state_at(law, last).force;
       EXPECT_LE(approach_under(law, greatest), last) << configuration;
@@ -476,7 +470,7 @@ TEST(HardeningWork, AgreesWithAdaptiveQuadrature) {
   exponents.insert(exponents.end(), {0.0, 1e-6, 1.0});
   for (const double exponent : exponents) {
     for (const Configuration configuration : k_configurations) {
-      const HardeningLaw law = make_hardening(exponent, configuration);
+      const Law law = make_law(exponent, configuration);
       double sum = 0.0;
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         const auto force = [&, branch = regime](double x) { return state_in(law, branch, x).force; };
@@ -496,7 +490,7 @@ TEST(HardeningWork, AgreesWithAdaptiveQuadrature) {
 TEST(HardeningWork, IsThatOfThePowerLawForSmallContacts) {
   const double x = 1e-9;
   for (const double exponent : {0.0, 0.3, 1.0}) {
-    const HardeningLaw law = make_hardening(exponent, Configuration::hydrostatic);
+    const Law law = make_law(exponent, Configuration::hydrostatic);
     EXPECT_LE(relative_error(work(law, x), 6.0 * state_at(law, x).force * x / (2.0 + 0.5 * exponent)), 20.0 * x);
     EXPECT_EQ(work(law, 0.0), 0.0);
     EXPECT_EQ(work(law, -0.1), 0.0);
@@ -505,7 +499,7 @@ TEST(HardeningWork, IsThatOfThePowerLawForSmallContacts) {
 
 TEST(HardeningWork, IsFiniteAtZeroPorosity) {
   for (const Configuration configuration : k_enclosed) {
-    const HardeningLaw law = make_hardening(0.3, configuration);
+    const Law law = make_law(0.3, configuration);
     const double last = std::nextafter(law.limit, 0.0);
     const double margin = law.limit * (1.0 - k_zero_porosity_margin);
     EXPECT_GT(work(law, last), work(law, margin));
@@ -516,7 +510,7 @@ TEST(HardeningWork, IsFiniteAtZeroPorosity) {
 // --- domain
 
 TEST(HardeningDomain, HasNoForceWithoutContact) {
-  const HardeningLaw law = make_hardening(0.3, Configuration::die);
+  const Law law = make_law(0.3, Configuration::die);
   for (const double x : {0.0, -1e-9, -2.0, -k_infinity}) {
     const ContactState state = state_at(law, x);
     EXPECT_EQ(state.regime, Regime::open) << "x = " << x;
@@ -528,7 +522,7 @@ TEST(HardeningDomain, HasNoForceWithoutContact) {
 
 TEST(HardeningDomain, EndsAtZeroPorosityOrWhereTheWallsMeet) {
   for (const Configuration configuration : k_configurations) {
-    const HardeningLaw law = make_hardening(0.3, configuration);
+    const Law law = make_law(0.3, configuration);
     EXPECT_TRUE(std::isfinite(state_at(law, std::nextafter(law.limit, 0.0)).force_by_approach));
     for (const double x : {law.limit, 1.25, k_infinity}) {
       EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return state_at(law, x); }), number_text(x))) << x;
@@ -537,15 +531,15 @@ TEST(HardeningDomain, EndsAtZeroPorosityOrWhereTheWallsMeet) {
     EXPECT_THROW(static_cast<void>(state_at(law, k_nan)), std::domain_error);
     EXPECT_THROW(static_cast<void>(work(law, k_nan)), std::domain_error);
   }
-  EXPECT_DOUBLE_EQ(make_hardening(0.3, Configuration::die).limit, 1.0 - pi / 6.0);
-  EXPECT_DOUBLE_EQ(make_hardening(0.3, Configuration::hydrostatic).limit, 1.0 - std::cbrt(pi / 6.0));
-  EXPECT_EQ(make_hardening(0.3, Configuration::simple).limit, 1.0);
+  EXPECT_DOUBLE_EQ(make_law(0.3, Configuration::die).limit, 1.0 - pi / 6.0);
+  EXPECT_DOUBLE_EQ(make_law(0.3, Configuration::hydrostatic).limit, 1.0 - std::cbrt(pi / 6.0));
+  EXPECT_EQ(make_law(0.3, Configuration::simple).limit, 1.0);
 }
 
 TEST(HardeningDomain, IsCalibratedToHalfTheRadiusOrZeroPorosity) {
-  EXPECT_EQ(make_hardening(0.3, Configuration::simple).calibrated_end, 0.5);
+  EXPECT_EQ(make_law(0.3, Configuration::simple).calibrated_end, 0.5);
   for (const Configuration configuration : k_enclosed) {
-    const HardeningLaw law = make_hardening(0.3, configuration);
+    const Law law = make_law(0.3, configuration);
     EXPECT_EQ(law.calibrated_end, law.zero_porosity);
   }
 }
@@ -554,21 +548,20 @@ TEST(HardeningDomain, RefusesExponentsThatAreNone) {
   for (const double exponent :
        {-0.1, -std::numeric_limits<double>::denorm_min(), 1.0 + k_epsilon, 4.0, k_infinity, k_nan}) {
     for (const Configuration configuration : k_configurations) {
-      const std::string message =
-          refusal<std::invalid_argument>([&] { return make_hardening(exponent, configuration); });
+      const std::string message = refusal<std::invalid_argument>([&] { return make_law(exponent, configuration); });
       EXPECT_TRUE(contains(message, number_text(exponent))) << message;
     }
   }
 }
 
 TEST(HardeningDomain, HasNoRegimesOfElasticMaterials) {
-  const HardeningLaw die = make_hardening(0.3, Configuration::die);
+  const Law die = make_law(0.3, Configuration::die);
   for (const Regime regime :
        {Regime::elastic, Regime::elastic_plastic, Regime::elastic_volumetric, Regime::undefined}) {
     const std::string message = refusal<std::domain_error>([&] { return state_in(die, regime, 0.4); });
     EXPECT_TRUE(contains(message, name(regime))) << message;
   }
-  const HardeningLaw simple = make_hardening(0.3, Configuration::simple);
+  const Law simple = make_law(0.3, Configuration::simple);
   const std::string message =
       refusal<std::domain_error>([&] { return state_in(simple, Regime::low_compressibility, 0.4); });
   EXPECT_TRUE(contains(message, "simple")) << message;
@@ -576,7 +569,7 @@ TEST(HardeningDomain, HasNoRegimesOfElasticMaterials) {
 
 TEST(HardeningDomain, RefusesTrialStepsBeyondZeroPorosity) {
   for (const Configuration configuration : k_enclosed) {
-    const HardeningLaw law = make_hardening(0.3, configuration);
+    const Law law = make_law(0.3, configuration);
     for (const double x : {law.zero_porosity, law.zero_porosity + 1e-12, 0.6}) {
       const std::string message =
           refusal<std::domain_error>([&] { return state_in(law, Regime::low_compressibility, x); });
@@ -590,9 +583,9 @@ TEST(HardeningDomain, RefusesTrialStepsBeyondZeroPorosity) {
 }
 
 TEST(HardeningBoundaries, BearTheNamesOfTheirEvents) {
-  EXPECT_TRUE(boundaries(make_hardening(0.3, Configuration::simple)).empty());
+  EXPECT_TRUE(boundaries(make_law(0.3, Configuration::simple)).empty());
   for (const Configuration configuration : k_enclosed) {
-    const HardeningLaw law = make_hardening(0.3, configuration);
+    const Law law = make_law(0.3, configuration);
     const auto list = boundaries(law);
     ASSERT_EQ(list.size(), 2u);
     EXPECT_EQ(list[0].event, "low-compressibility");
@@ -604,13 +597,13 @@ TEST(HardeningBoundaries, BearTheNamesOfTheirEvents) {
 
 TEST(HardeningBoundaries, BelongToTheRegimeBefore) {
   for (const Configuration configuration : k_enclosed) {
-    const HardeningLaw law = make_hardening(0.3, configuration);
+    const Law law = make_law(0.3, configuration);
     EXPECT_EQ(regime_at(law, 0.0), Regime::open);
     EXPECT_EQ(regime_at(law, law.fall.end), Regime::fully_plastic);
     EXPECT_EQ(regime_at(law, std::nextafter(law.fall.end, 1.0)), Regime::low_compressibility);
   }
-  EXPECT_EQ(regime_at(make_hardening(0.3, Configuration::simple), 0.99), Regime::fully_plastic);
+  EXPECT_EQ(regime_at(make_law(0.3, Configuration::simple), 0.99), Regime::fully_plastic);
 }
 
 }  // namespace
-}  // namespace monograin::plastic::hardening_test
+}  // namespace monograin::hardening::law_test

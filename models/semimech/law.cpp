@@ -1,25 +1,22 @@
-#include "plastic/semimech.hpp"
+#include "semimech/law.hpp"
 
 #include "system/number_text.hpp"
 #include "system/resolution.hpp"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
-namespace monograin::plastic {
+namespace monograin::semimech {
 namespace {
 
 using std::numbers::pi;
 
 constexpr double k_yield_pressure = 1.1;  // H at x_y (text before eq. 2.17)
 constexpr double k_little_beyond = 1e-3;  // distance beyond zero porosity that trial steps may reach
-
-bool is_enclosed(Configuration configuration) noexcept { return configuration != Configuration::simple; }
 
 /// D_i = b_i^(i/2) alpha_i tanh(beta_i lambda^delta_i) (eq. 2.14, Table 2.2).
 RadiusSeries radius_series(Configuration configuration, double lambda) noexcept {
@@ -52,9 +49,9 @@ Stiffening make_stiffening(Configuration configuration, double zeta, const Press
 }
 
 /// ln(x_Hmax/x), exact near x_Hmax.
-double logarithm_to_greatest(const SemimechLaw& law, double x) noexcept { return std::log1p((law.fall.start - x) / x); }
+double logarithm_to_greatest(const Law& law, double x) noexcept { return std::log1p((law.fall.start - x) / x); }
 
-ValueAndSlope elastic_pressure(const SemimechLaw& law, double x) noexcept {  // eqs. 2.15, 2.16
+ValueAndSlope elastic_pressure(const Law& law, double x) noexcept {  // eqs. 2.15, 2.16
   const double factor = 4.0 * law.material.modulus_over_yield / (3.0 * pi);
   const double root = std::sqrt(x);
   return {.value = factor * root, .slope = 0.5 * factor / root};
@@ -62,7 +59,7 @@ ValueAndSlope elastic_pressure(const SemimechLaw& law, double x) noexcept {  // 
 
 /// Beyond the greatest pressure the curve continues like the nearest integer power: where the exponent is near 1, a
 /// mirror image would have a kink there.
-ValueAndSlope elastic_plastic_pressure(const SemimechLaw& law, double x) noexcept {  // eqs. 2.18, 2.21
+ValueAndSlope elastic_plastic_pressure(const Law& law, double x) noexcept {  // eqs. 2.18, 2.21
   const double ratio = logarithm_to_greatest(law, x) / law.yield_logarithm;
   const double rise = law.fall.greatest - k_yield_pressure;
   const double power = std::pow(std::abs(ratio), law.logarithm_exponent - 1.0);
@@ -76,7 +73,7 @@ ValueAndSlope elastic_plastic_pressure(const SemimechLaw& law, double x) noexcep
 
 /// A little beyond zero porosity the curve continues along its tangent. For nearly incompressible materials the pole of
 /// the logarithm lies there, and a trial step that begins at zero porosity has to end somewhere.
-ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  // eq. 2.41
+ValueAndSlope low_compressibility_pressure(const Law& law, double x) {  // eq. 2.41
   const Stiffening& c = law.stiffening;
   const double within = std::min(x, c.zero_porosity);
   if (x - within > k_little_beyond) {
@@ -94,7 +91,7 @@ ValueAndSlope low_compressibility_pressure(const SemimechLaw& law, double x) {  
   return {.value = law.fall.least - c.pressure_scale * std::log(argument) + slope * (x - within), .slope = slope};
 }
 
-ValueAndSlope elastic_volumetric_pressure(const SemimechLaw& law, double x) noexcept {  // eq. 2.44
+ValueAndSlope elastic_volumetric_pressure(const Law& law, double x) noexcept {  // eq. 2.44
   // 1 - chi is counted from zero porosity, so that the branches join there to the last digit.
   const Stiffening& c = law.stiffening;
   const double loss = c.elastic_volume + cell_shrinkage(law.configuration, c.zero_porosity, x);
@@ -102,7 +99,7 @@ ValueAndSlope elastic_volumetric_pressure(const SemimechLaw& law, double x) noex
   return {.value = zeta * loss, .slope = -zeta * cell_slope(law.configuration, x)};
 }
 
-ValueAndSlope pressure_in(const SemimechLaw& law, Regime regime, double x) {
+ValueAndSlope pressure_in(const Law& law, Regime regime, double x) {
   switch (regime) {
     case Regime::elastic:
       return elastic_pressure(law, x);
@@ -133,7 +130,7 @@ double integral(const Integrand& f, double a, double b) {
 }
 
 /// x under a small force, where a/R = D1 x^(1/2). Its relative error is of order x.
-double small_approach(const SemimechLaw& law, double force) {
+double small_approach(const Law& law, double force) {
   const double first = law.radius.first;
   const double root = std::cbrt(3.0 * force / (4.0 * law.material.modulus_over_yield * first * first));
   return root * root;
@@ -141,7 +138,7 @@ double small_approach(const SemimechLaw& law, double force) {
 
 }  // namespace
 
-SemimechMaterial make_semimech_material(double youngs_modulus, double poisson_ratio, double yield_stress) {
+Material make_material(double youngs_modulus, double poisson_ratio, double yield_stress) {
   if (!(youngs_modulus > 0.0) || !std::isfinite(youngs_modulus))
     throw std::invalid_argument("Young's modulus must be positive and finite, but is " + number_text(youngs_modulus));
   if (!(yield_stress > 0.0) || !std::isfinite(yield_stress))
@@ -161,7 +158,7 @@ bool is_in_fitted_range(double value, double lower, double upper) noexcept {
 
 std::vector<OutOfRange> outside_calibration(double youngs_modulus, double poisson_ratio, double yield_stress,
                                             Configuration configuration) {
-  const SemimechMaterial material = make_semimech_material(youngs_modulus, poisson_ratio, yield_stress);
+  const Material material = make_material(youngs_modulus, poisson_ratio, yield_stress);
   std::vector<OutOfRange> found;
   const auto check = [&](OutOfRange entry) {
     if (!is_in_fitted_range(entry.value, entry.lower, entry.upper)) found.push_back(entry);
@@ -176,7 +173,7 @@ std::vector<OutOfRange> outside_calibration(double youngs_modulus, double poisso
   return found;
 }
 
-SemimechLaw make_semimech(const SemimechMaterial& material, Configuration configuration) {
+Law make_law(const Material& material, Configuration configuration) {
   const double lambda = material.modulus_over_yield;
   const double zeta = material.bulk_over_yield;
   if (!(lambda >= k_least_modulus_over_yield) || !std::isfinite(lambda)) {
@@ -190,7 +187,7 @@ SemimechLaw make_semimech(const SemimechMaterial& material, Configuration config
         " (nu = 0.5 has none)");
   }
 
-  SemimechLaw law{.configuration = configuration, .material = material, .radius = radius_series(configuration, lambda)};
+  Law law{.configuration = configuration, .material = material, .radius = radius_series(configuration, lambda)};
   const double root = 3.0 * pi * k_yield_pressure / (4.0 * lambda);
   law.yield_approach = root * root;
   const double greatest = 3.101 * std::tanh(0.6746 * std::pow(lambda, 0.0829));   // eq. 2.19
@@ -215,7 +212,7 @@ SemimechLaw make_semimech(const SemimechMaterial& material, Configuration config
   return law;
 }
 
-Boundaries boundaries(const SemimechLaw& law) {
+Boundaries boundaries(const Law& law) {
   Boundaries list{{"yield", law.yield_approach, Regime::elastic_plastic},
                   {"fully-plastic", law.fall.start, Regime::fully_plastic}};
   if (is_enclosed(law.configuration)) {
@@ -225,7 +222,7 @@ Boundaries boundaries(const SemimechLaw& law) {
   return list;
 }
 
-Regime regime_at(const SemimechLaw& law, double x) noexcept {
+Regime regime_at(const Law& law, double x) noexcept {
   if (!(x > 0.0)) return Regime::open;
   if (x <= law.yield_approach) return Regime::elastic;
   if (x <= law.fall.start) return Regime::elastic_plastic;
@@ -233,18 +230,18 @@ Regime regime_at(const SemimechLaw& law, double x) noexcept {
   return x <= law.stiffening.zero_porosity ? Regime::low_compressibility : Regime::elastic_volumetric;
 }
 
-ContactState state_at(const SemimechLaw& law, double x) {
-  require_approach_below(x, SemimechLaw::limit, Limit::walls_meet);
+ContactState state_at(const Law& law, double x) {
+  plastic::require_approach_below(x, Law::limit, Limit::walls_meet);
   return state_in(law, regime_at(law, x), x);
 }
 
-ContactState state_in(const SemimechLaw& law, Regime regime, double x) {
+ContactState state_in(const Law& law, Regime regime, double x) {
   if (regime == Regime::open) return {};
   if (!(x > 0.0)) throw std::domain_error("displacement/R0 = " + number_text(x) + " is no contact");
   return loaded_contact(regime, contact_radius(law.radius, x), pressure_in(law, regime, x));
 }
 
-double approach_under(const SemimechLaw& law, double force, double near) {
+double approach_under(const Law& law, double force, double near) {
   if (!(force > 0.0)) {
     if (force <= 0.0) return 0.0;
     throw std::domain_error("the force is not a number");
@@ -256,27 +253,26 @@ double approach_under(const SemimechLaw& law, double force, double near) {
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const Boundary& end = ends[k];
     if (force <= law.boundary_forces[k]) {
-      if (const auto found = approach_near(state, lower, end.approach, force, near)) return *found;
-      return regime == Regime::elastic ? approach_from_touch(state, end.approach, force, small_approach(law, force))
-                                       : approach_between(state, lower, end.approach, force, lower);
+      if (const auto found = plastic::approach_near(state, lower, end.approach, force, near)) return *found;
+      return regime == Regime::elastic
+                 ? plastic::approach_from_touch(state, end.approach, force, small_approach(law, force))
+                 : plastic::approach_between(state, lower, end.approach, force, lower);
     }
     lower = end.approach;
     regime = end.beyond;
   }
-  const double last = std::nextafter(SemimechLaw::limit, 0.0);
+  const double last = std::nextafter(Law::limit, 0.0);
   const double greatest = state(last).force;
   if (force <= greatest) {
-    const auto found = approach_near(state, lower, last, force, near);
-    return found ? *found : approach_between(state, lower, last, force, lower);
+    const auto found = plastic::approach_near(state, lower, last, force, near);
+    return found ? *found : plastic::approach_between(state, lower, last, force, lower);
   }
   throw DomainError(Limit::walls_meet, "a force of " + number_text(force) + " Y R0^2 is above the greatest, " +
                                            number_text(greatest) +
                                            " Y R0^2 just below displacement/R0 = 1, where the walls meet");
 }
 
-double impingement_approach(const SemimechLaw& law) { return impingement_approach(law.configuration, law.radius); }
-
-double work_in(const SemimechLaw& law, Regime regime, double x) {
+double work_in(const Law& law, Regime regime, double x) {
   // Each regime is integrated in a variable in which its force is smooth.
   const auto force = [&](double at) { return state_in(law, regime, at).force; };
   switch (regime) {
@@ -303,15 +299,15 @@ double work_in(const SemimechLaw& law, Regime regime, double x) {
       const double span = cell_shrinkage(law.configuration, law.fall.end, law.stiffening.zero_porosity);
       const double beyond = -0.5 * law.stiffening.softness_complement * span /
                             cell_slope(law.configuration, law.stiffening.zero_porosity);
-      return work_below_singularity(force, law.fall.end, x, law.stiffening.zero_porosity + beyond);
+      return plastic::work_below_singularity(force, law.fall.end, x, law.stiffening.zero_porosity + beyond);
     }
     default:
       return integral<7>(force, law.stiffening.zero_porosity, x);
   }
 }
 
-double work(const SemimechLaw& law, double x) {
-  require_approach_below(x, SemimechLaw::limit, Limit::walls_meet);
+double work(const Law& law, double x) {
+  plastic::require_approach_below(x, Law::limit, Limit::walls_meet);
   if (x <= 0.0) return 0.0;
   double sum = 0.0;
   Regime regime = Regime::elastic;
@@ -323,73 +319,4 @@ double work(const SemimechLaw& law, double x) {
   return moving_walls(law.configuration) * (sum + work_in(law, regime, x));
 }
 
-double lateral_onset(double modulus_over_yield) noexcept {
-  struct Entry {
-    double modulus_over_yield, onset;
-  };
-  constexpr std::array<Entry, 5> table{
-      {{163.08, 0.4159}, {386.40, 0.4115}, {1045.79, 0.4102}, {2841.34, 0.41}, {4954.40, 0.4098}}};
-  constexpr double same_material = 1e-3;  // the printed moduli are rounded
-  for (const Entry& entry : table) {
-    if (std::abs(modulus_over_yield / entry.modulus_over_yield - 1.0) < same_material) return entry.onset;
-  }
-  const double lambda =
-      std::clamp(modulus_over_yield, k_least_lateral_modulus_over_yield, k_greatest_lateral_modulus_over_yield);
-  return 0.409833 + 4.03e-4 * std::pow(1e-3 * lambda, -1.4956);
-}
-
-LateralLaw make_lateral(const SemimechLaw& law) {
-  if (law.configuration != Configuration::die)
-    throw std::invalid_argument("lateral contacts exist in the die only, not under " +
-                                std::string(name(law.configuration)) + " compression");
-  const double lambda = law.material.modulus_over_yield;
-  const double exponent = 5.7775 * std::tanh(0.0159 * std::pow(lambda, 0.6146));                  // eq. 2.51
-  const double log_tau = -std::log(1480.8863 * std::tanh(5.0261e-5 * std::pow(lambda, 1.2889)));  // eq. 2.50, mm
-  LateralLaw lateral{.log_coefficient = log_tau + (exponent - 1.0) * std::log(20.0), .exponent = exponent};
-  lateral.yield_approach = std::exp((std::log(law.yield_approach) - lateral.log_coefficient) / exponent);
-  lateral.onset = lateral_onset(lambda);
-  return lateral;
-}
-
-ValueAndSlope lateral_approach(const LateralLaw& lateral, double x) noexcept {
-  const double value = std::exp(lateral.log_coefficient + lateral.exponent * std::log(x));
-  return {.value = value, .slope = lateral.exponent * value / x};
-}
-
-Boundaries boundaries(const SemimechLaw& law, const LateralLaw& lateral) {
-  Boundaries list;
-  if (lateral.yield_approach < LateralLaw::small_range_end)
-    list.push_back({"yield", lateral.yield_approach, Regime::elastic_plastic});
-  list.push_back({"", LateralLaw::small_range_end, Regime::undefined});
-  list.push_back({"secondary-onset", lateral.onset, regime_at(law, lateral.onset)});
-  if (lateral.onset < law.stiffening.zero_porosity)
-    list.push_back({"", law.stiffening.zero_porosity, Regime::elastic_volumetric});
-  return list;
-}
-
-ContactState lateral_state_in(const SemimechLaw& law, const LateralLaw& lateral, Regime regime, double x) {
-  if (regime == Regime::open) return {};
-  if (regime == Regime::elastic || regime == Regime::elastic_plastic) {
-    const auto [own, slope] = lateral_approach(lateral, x);
-    ContactState state = state_in(law, regime, own);
-    state.contact_radius_by_approach *= slope;
-    state.pressure_by_approach *= slope;
-    state.force_by_approach *= slope;
-    return state;
-  }
-  ContactState state{.regime = regime,
-                     .contact_radius = k_nan,
-                     .pressure = k_nan,
-                     .force = k_nan,
-                     .contact_radius_by_approach = k_nan,
-                     .pressure_by_approach = k_nan,
-                     .force_by_approach = k_nan};
-  if (regime != Regime::undefined) {
-    const ContactState primary = state_in(law, regime, x);
-    state.pressure = primary.pressure;
-    state.pressure_by_approach = primary.pressure_by_approach;
-  }
-  return state;
-}
-
-}  // namespace monograin::plastic
+}  // namespace monograin::semimech

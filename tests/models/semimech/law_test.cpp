@@ -1,4 +1,4 @@
-#include "plastic/semimech.hpp"
+#include "semimech/law.hpp"
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -17,51 +17,18 @@
 #include <gtest/gtest.h>
 
 #include "elastic/hertz.hpp"
+#include "hardening/law.hpp"
 #include "models/accuracy.hpp"
-#include "models/plastic/cases.hpp"
-#include "plastic/hardening.hpp"
+#include "models/semimech/steels.hpp"
 #include "system/number_text.hpp"
+#include "system/resolution.hpp"
 
-namespace monograin::plastic::semimech_test {
+namespace monograin::semimech::law_test {
 namespace {
 
-/// State of a lateral contact at x > 0. A boundary belongs to the regime before it, except the onset.
-ContactState lateral_state_at(const SemimechLaw& law, const LateralLaw& lateral, double x) {
-  Regime regime = Regime::elastic;
-  for (const Boundary& end : boundaries(law, lateral)) {
-    if (x > end.approach || (x == end.approach && end.event == "secondary-onset")) regime = end.beyond;
-  }
-  return lateral_state_in(law, lateral, regime, x);
-}
+using namespace plastic;
 
 using std::numbers::pi;
-
-constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_infinity = std::numeric_limits<double>::infinity();
-
-struct Steel {
-  double youngs_modulus, poisson_ratio, yield_stress;
-
-  [[nodiscard]] SemimechLaw law(Configuration configuration) const {
-    return make_semimech(make_semimech_material(youngs_modulus, poisson_ratio, yield_stress), configuration);
-  }
-};
-
-std::ostream& operator<<(std::ostream& out, const Steel& steel) {
-  return out << "E = " << steel.youngs_modulus << ", nu = " << steel.poisson_ratio << ", Y = " << steel.yield_stress;
-}
-
-Steel steel_of(const Table& table, std::size_t row) {
-  return {number(table, row, "E"), number(table, row, "nu"), number(table, row, "sigma_y")};
-}
-
-/// All materials of the source's calculations.
-std::vector<Steel> steels_of_the_source() {
-  const Table table = reference("table_A1");
-  std::vector<Steel> steels;
-  for (std::size_t row = 0; row < table.row_count(); ++row) steels.push_back(steel_of(table, row));
-  return steels;
-}
 
 /// Random materials from the least lambda to far beyond the calibrated range. Below a Poisson's ratio of 0 there may be
 /// no law, because the elastic loss of volume of a soft material may exceed the whole volume.
@@ -76,7 +43,7 @@ struct RandomSteels {
   }
 };
 
-std::vector<Stretch> stretches_of(const SemimechLaw& law) {
+std::vector<Stretch> stretches_of(const Law& law) {
   const bool is_simple = law.configuration == Configuration::simple;
   return stretches(law, Regime::elastic, is_simple ? 1.0 : std::min(1.0, law.stiffening.zero_porosity + 0.01));
 }
@@ -84,11 +51,11 @@ std::vector<Stretch> stretches_of(const SemimechLaw& law) {
 // --- derived parameters
 
 TEST(SemimechParameters, AgreeWithFiftyDigits) {
-  const Table table = reference("parameters_elastic_plastic");
+  const Table table = reference("semimech", "parameters_elastic_plastic");
   ASSERT_EQ(table.row_count(), 18u);
   int compared = 0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const SemimechLaw law = steel_of(table, row).law(configuration_named(word(table, row, "configuration")));
+    const Law law = steel_of(table, row).law(configuration_named(word(table, row, "configuration")));
     const auto expect = [&](std::string_view column, double actual, double scale = 0.0) {
       const double expected = number(table, row, column);
       if (std::isnan(expected)) return;
@@ -146,7 +113,7 @@ TEST(SemimechParameters, LetTheContactRadiusGrowWhateverTheMaterial) {
   const auto largest = [](Configuration configuration) {
     double value = -20.0;
     for (double lambda = 22.1; lambda < 1e12; lambda *= 1.01) {
-      const auto [d1, d3, d5] = make_semimech({lambda, lambda}, configuration).radius;
+      const auto [d1, d3, d5] = make_law({lambda, lambda}, configuration).radius;
       value = std::max(value, 9.0 * d3 * d3 / (d1 * d5) - 20.0);
     }
     return value;
@@ -157,15 +124,15 @@ TEST(SemimechParameters, LetTheContactRadiusGrowWhateverTheMaterial) {
 }
 
 TEST(SemimechParameters, LoseTheZeroSlopeAtTheMaximumBelowTheLeastModulus) {
-  const SemimechLaw law = make_semimech({k_least_modulus_over_yield, 50.0}, Configuration::simple);
+  const Law law = make_law({k_least_modulus_over_yield, 50.0}, Configuration::simple);
   EXPECT_NEAR(law.logarithm_exponent, 1.0, 1e-14);
-  EXPECT_GT(make_semimech({22.0931, 50.0}, Configuration::simple).logarithm_exponent, 1.0);
+  EXPECT_GT(make_law({22.0931, 50.0}, Configuration::simple).logarithm_exponent, 1.0);
 }
 
 TEST(SemimechParameters, KeepTheDigitsOfEarlyInflexions) {
   // With r - 1 = 1.9e-13 and a negative shift, the inflexion point is at -(r - 1)/(2 tan s) to first order: a small
   // difference of two numbers of order 1.
-  const PressureFall fall = make_semimech({1e40, 1e40}, Configuration::hydrostatic).fall;
+  const PressureFall fall = make_law({1e40, 1e40}, Configuration::hydrostatic).fall;
   ASSERT_LT(fall.shift, 0.0);
   EXPECT_LE(relative_error(fall.inflexion, -0.5 * fall.exponent_excess / std::tan(fall.shift)), 1e-9);
 }
@@ -175,7 +142,7 @@ TEST(SemimechParameters, AreInOrderForAllMaterials) {
   for (int i = 0; i < 10000; ++i) {
     const Steel steel = random();
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       double last = 0.0;
       for (const Boundary& boundary : boundaries(law)) {
         ASSERT_GT(boundary.approach, last) << steel << ", " << configuration << ", " << boundary.event;
@@ -191,10 +158,10 @@ TEST(SemimechParameters, AreInOrderForAllMaterials) {
 class SemimechCurve : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SemimechCurve, AgreesWithFiftyDigits) {
-  const Table table = reference(std::string("ep_") + GetParam());
+  const Table table = reference("semimech", std::string("ep_") + GetParam());
   ASSERT_GT(table.row_count(), 40u);
   const Steel steel{header_number(table, "E"), header_number(table, "nu"), header_number(table, "sigma_y")};
-  const SemimechLaw law = steel.law(configuration_named(table.header_value("configuration")));
+  const Law law = steel.law(configuration_named(table.header_value("configuration")));
   int without_slope = 0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const double x = number(table, row, "gamma_over_2R");
@@ -240,7 +207,7 @@ INSTANTIATE_TEST_SUITE_P(Semimech, SemimechCurve,
 TEST(SemimechJoints, AreSmoothForTheSourcesMaterials) {
   for (const Steel& steel : steels_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       const JointError error = joint_error(law, stretches_of(law));
       EXPECT_LE(error.pressure, 4e-15) << steel << ", " << configuration;
       EXPECT_LE(error.slope, 4e-15) << steel << ", " << configuration;
@@ -254,7 +221,7 @@ TEST(SemimechJoints, AreSmoothForRandomMaterials) {
   for (int i = 0; i < 10000; ++i) {
     const Steel steel = random();
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       const JointError error = joint_error(law, stretches_of(law));
       ASSERT_LE(error.pressure, 1e-14) << steel << ", " << configuration;  // largest error found: 2.6e-15
       ASSERT_LE(error.slope, 1e-14) << steel << ", " << configuration;     // largest error found: 1.4e-15
@@ -265,7 +232,7 @@ TEST(SemimechJoints, AreSmoothForRandomMaterials) {
 TEST(SemimechJoints, BearThePressuresThatDefineThem) {
   for (const Steel& steel : steels_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       const auto pressure = [&](double x) { return state_at(law, x).pressure; };
       constexpr double tolerance = 1e-14;
       EXPECT_LE(relative_error(pressure(law.yield_approach), 1.1), tolerance) << steel << ", " << configuration;
@@ -287,7 +254,7 @@ TEST(SemimechJoints, BearThePressuresThatDefineThem) {
 TEST(SemimechJoints, StayCloseForTrialStepsALittleBeyond) {
   for (const Steel& steel : steels_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       const auto list = stretches_of(law);
       for (std::size_t i = 1; i < list.size(); ++i) {
         const double x = list[i].begin;
@@ -312,7 +279,7 @@ TEST(SemimechDerivatives, AgreeWithDifferences) {
   double largest_pressure = 0.0, largest_force = 0.0, largest_radius = 0.0;
   for (const Steel& steel : steels_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         for (const double share : {0.1, 0.35, 0.6, 0.9}) {
           const double x = std::lerp(begin, end, share);
@@ -349,7 +316,7 @@ TEST(SemimechDerivatives, AgreeWithDifferencesOutsideOfTheirRegimes) {
   // nearest integer power.
   for (const Steel& steel : steels_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       const double peak = law.fall.start;
       for (const auto& [regime, x] : {std::pair(Regime::elastic_plastic, 1.2 * peak),
                                       std::pair(Regime::fully_plastic, 0.8 * peak), std::pair(Regime::elastic, peak)}) {
@@ -373,7 +340,7 @@ TEST(SemimechForce, RisesAndIsFiniteEverywhere) {
   for (int i = 0; i < 10000; ++i) {
     const Steel steel = random();
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         for (int k = 0; k < 6; ++k) {
           const double x = std::min(uniform(random.generator, begin, end), std::nextafter(1.0, 0.0));
@@ -392,7 +359,7 @@ TEST(SemimechForce, RisesAndIsFiniteEverywhere) {
 TEST(SemimechForce, IsThatOfHertzTimesTheSquareOfTheFirstCoefficientForSmallContacts) {
   for (const Steel& steel : steels_of_the_source()) {
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       const double d1 = law.radius.first;
       for (const double x : {1e-12, 1e-9, 1e-7}) {
         const double hertz = hertz_force(law.material.modulus_over_yield, 1.0, x);
@@ -406,9 +373,9 @@ TEST(SemimechForce, IsThatOfHertzTimesTheSquareOfTheFirstCoefficientForSmallCont
 
 TEST(SemimechForce, BecomesThatOfIdealPlasticityWithoutHardeningForStiffMaterials) {
   for (const Configuration configuration : k_configurations) {
-    const HardeningLaw rigid = make_hardening(0.0, configuration);
+    const hardening::Law rigid = hardening::make_law(0.0, configuration);
     const auto distance = [&](double ratio) {
-      const SemimechLaw law = make_semimech({ratio, ratio}, configuration);
+      const Law law = make_law({ratio, ratio}, configuration);
       double largest = 0.0;
       for (double x = 0.01; x < rigid.limit; x += 0.01) {
         largest = std::max(largest, relative_error(state_at(law, x).pressure, state_at(rigid, x).pressure));
@@ -429,8 +396,8 @@ TEST(SemimechImpingement, IsWhereTheContactReachesTheEdgeOfItsFace) {
   for (int i = 0; i < 1000; ++i) {
     const Steel steel = random();
     for (const Configuration configuration : {Configuration::die, Configuration::hydrostatic}) {
-      const SemimechLaw law = steel.law(configuration);
-      const double x = impingement_approach(law);
+      const Law law = steel.law(configuration);
+      const double x = impingement_approach(law.configuration, law.radius);
       const double edge = configuration == Configuration::die ? 1.0 : 1.0 - x;
       ASSERT_LT(x, 1.0) << steel << ", " << configuration;
       ASSERT_LE(relative_error(state_at(law, x).contact_radius, edge), 2e-15)  // largest error found: 6.8e-16
@@ -441,18 +408,19 @@ TEST(SemimechImpingement, IsWhereTheContactReachesTheEdgeOfItsFace) {
 
 TEST(SemimechImpingement, PrecedesZeroPorosityForTheSourcesMaterials) {
   for (const Steel& steel : steels_of_the_source()) {
-    const SemimechLaw die = steel.law(Configuration::die);
-    EXPECT_GT(impingement_approach(die), die.fall.end) << steel;
-    EXPECT_LT(impingement_approach(die), die.stiffening.zero_porosity) << steel;
-    const SemimechLaw press = steel.law(Configuration::hydrostatic);
-    EXPECT_GT(impingement_approach(press), press.fall.end) << steel;
-    EXPECT_LT(impingement_approach(press), press.stiffening.zero_porosity) << steel;
+    const Law die = steel.law(Configuration::die);
+    EXPECT_GT(impingement_approach(die.configuration, die.radius), die.fall.end) << steel;
+    EXPECT_LT(impingement_approach(die.configuration, die.radius), die.stiffening.zero_porosity) << steel;
+    const Law press = steel.law(Configuration::hydrostatic);
+    EXPECT_GT(impingement_approach(press.configuration, press.radius), press.fall.end) << steel;
+    EXPECT_LT(impingement_approach(press.configuration, press.radius), press.stiffening.zero_porosity) << steel;
   }
 }
 
 TEST(SemimechImpingement, DoesNotExistInSimpleCompression) {
   const std::string message = refusal<std::invalid_argument>([] {
-    return impingement_approach(Steel{200e9, 0.3, 500e6}.law(Configuration::simple));
+    const Law law = Steel{200e9, 0.3, 500e6}.law(Configuration::simple);
+    return impingement_approach(law.configuration, law.radius);
   });
   EXPECT_TRUE(contains(message, "die")) << message;
 }
@@ -464,7 +432,7 @@ TEST(SemimechInverse, FindsTheApproachAgain) {
   for (int i = 0; i < 2000; ++i) {
     const Steel steel = random();
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         for (const double x : {uniform(random.generator, begin, end), begin + 1e-9 * (end - begin), end}) {
           if (!(x < 1.0)) continue;
@@ -479,7 +447,7 @@ TEST(SemimechInverse, FindsTheApproachAgain) {
 }
 
 TEST(SemimechInverse, TakesTheSmallestForces) {
-  const SemimechLaw law = Steel{200e9, 0.3, 500e6}.law(Configuration::die);
+  const Law law = Steel{200e9, 0.3, 500e6}.law(Configuration::die);
   EXPECT_EQ(approach_under(law, 0.0), 0.0);
   EXPECT_EQ(approach_under(law, -1.0), 0.0);
   for (const double force : {1e-300, 1e-100, 1e-30, 1e-12}) {
@@ -491,7 +459,7 @@ TEST(SemimechInverse, TakesTheSmallestForces) {
 
 TEST(SemimechInverse, RefusesForcesBeyondTheLimit) {
   for (const Configuration configuration : k_configurations) {
-    const SemimechLaw law = Steel{200e9, 0.3, 500e6}.law(configuration);
+    const Law law = Steel{200e9, 0.3, 500e6}.law(configuration);
     const double last = std::nextafter(1.0, 0.0);
     const double greatest = state_at(law, last).force;
     EXPECT_LE(approach_under(law, greatest), last) << configuration;
@@ -514,7 +482,7 @@ TEST(SemimechWork, AgreesWithAdaptiveQuadrature) {
   boost::math::quadrature::tanh_sinh<double> quadrature;
   for (const Steel& steel : steels) {
     for (const Configuration configuration : k_configurations) {
-      const SemimechLaw law = steel.law(configuration);
+      const Law law = steel.law(configuration);
       double sum = 0.0;
       for (const auto& [regime, begin, end] : stretches_of(law)) {
         const auto force = [&, branch = regime](double x) { return state_in(law, branch, x).force; };
@@ -533,7 +501,7 @@ TEST(SemimechWork, AgreesWithAdaptiveQuadrature) {
 }
 
 TEST(SemimechWork, IsTwoFifthsOfForceTimesApproachForSmallContacts) {
-  const SemimechLaw law = Steel{200e9, 0.3, 500e6}.law(Configuration::hydrostatic);
+  const Law law = Steel{200e9, 0.3, 500e6}.law(Configuration::hydrostatic);
   const double x = 1e-9;
   EXPECT_LE(relative_error(work(law, x), 6.0 * 0.4 * state_at(law, x).force * x), 1e-8);
   EXPECT_EQ(work(law, 0.0), 0.0);
@@ -543,7 +511,7 @@ TEST(SemimechWork, IsTwoFifthsOfForceTimesApproachForSmallContacts) {
 // --- domain
 
 TEST(SemimechDomain, HasNoForceWithoutContact) {
-  const SemimechLaw law = Steel{200e9, 0.3, 500e6}.law(Configuration::die);
+  const Law law = Steel{200e9, 0.3, 500e6}.law(Configuration::die);
   for (const double x : {0.0, -1e-9, -2.0, -k_infinity}) {
     const ContactState state = state_at(law, x);
     EXPECT_EQ(state.regime, Regime::open) << "x = " << x;
@@ -555,7 +523,7 @@ TEST(SemimechDomain, HasNoForceWithoutContact) {
 
 TEST(SemimechDomain, EndsWhereTheWallsMeet) {
   for (const Configuration configuration : k_configurations) {
-    const SemimechLaw law = Steel{200e9, 0.3, 500e6}.law(configuration);
+    const Law law = Steel{200e9, 0.3, 500e6}.law(configuration);
     EXPECT_NO_THROW(static_cast<void>(state_at(law, std::nextafter(1.0, 0.0))));
     for (const double x : {1.0, 1.25, k_infinity}) {
       EXPECT_TRUE(contains(refusal<std::domain_error>([&] { return state_at(law, x); }), number_text(x))) << x;
@@ -566,7 +534,7 @@ TEST(SemimechDomain, EndsWhereTheWallsMeet) {
 }
 
 TEST(SemimechDomain, HasNoCompressibilityInSimpleCompression) {
-  const SemimechLaw law = Steel{200e9, 0.3, 500e6}.law(Configuration::simple);
+  const Law law = Steel{200e9, 0.3, 500e6}.law(Configuration::simple);
   for (const Regime regime : {Regime::low_compressibility, Regime::elastic_volumetric, Regime::undefined}) {
     const std::string message = refusal<std::domain_error>([&] { return state_in(law, regime, 0.4); });
     EXPECT_TRUE(contains(message, name(regime))) << message;
@@ -576,7 +544,7 @@ TEST(SemimechDomain, HasNoCompressibilityInSimpleCompression) {
 TEST(SemimechDomain, GoesOnAlongItsTangentALittleBeyondZeroPorosity) {
   for (const double poisson_ratio : {0.3, 0.4999}) {
     for (const Configuration configuration : {Configuration::die, Configuration::hydrostatic}) {
-      const SemimechLaw law = Steel{200e9, poisson_ratio, 500e6}.law(configuration);
+      const Law law = Steel{200e9, poisson_ratio, 500e6}.law(configuration);
       const double x = law.stiffening.zero_porosity;
       const auto at = [&](double beyond) { return state_in(law, Regime::low_compressibility, x + beyond); };
       EXPECT_GT(at(1e-9).pressure, at(0.0).pressure);
@@ -610,11 +578,10 @@ TEST(SemimechDomain, RefusesMaterialsThatAreTooSoft) {
     EXPECT_TRUE(contains(message, "= 20:")) << message;
     EXPECT_TRUE(contains(message, "22.0930898")) << message;
   }
-  EXPECT_NO_THROW(static_cast<void>(make_semimech({k_least_modulus_over_yield, 10.0}, Configuration::die)));
-  EXPECT_THROW(
-      static_cast<void>(make_semimech({std::nextafter(k_least_modulus_over_yield, 0.0), 10.0}, Configuration::die)),
-      std::invalid_argument);
-  EXPECT_THROW(static_cast<void>(make_semimech({k_infinity, 10.0}, Configuration::die)), std::invalid_argument);
+  EXPECT_NO_THROW(static_cast<void>(make_law({k_least_modulus_over_yield, 10.0}, Configuration::die)));
+  EXPECT_THROW(static_cast<void>(make_law({std::nextafter(k_least_modulus_over_yield, 0.0), 10.0}, Configuration::die)),
+               std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_law({k_infinity, 10.0}, Configuration::die)), std::invalid_argument);
 }
 
 TEST(SemimechDomain, RefusesIncompressibleMaterialsThatAreEnclosed) {
@@ -627,10 +594,10 @@ TEST(SemimechDomain, RefusesIncompressibleMaterialsThatAreEnclosed) {
 }
 
 TEST(SemimechDomain, RefusesMaterialsThatCompressToNothing) {
-  const SemimechMaterial material{171.9, 1.9911785};
-  EXPECT_NO_THROW(static_cast<void>(make_semimech(material, Configuration::simple)));
+  const Material material{171.9, 1.9911785};
+  EXPECT_NO_THROW(static_cast<void>(make_law(material, Configuration::simple)));
   for (const Configuration configuration : {Configuration::die, Configuration::hydrostatic}) {
-    const std::string message = refusal<std::invalid_argument>([&] { return make_semimech(material, configuration); });
+    const std::string message = refusal<std::invalid_argument>([&] { return make_law(material, configuration); });
     EXPECT_TRUE(contains(message, "1.9911785")) << message;
   }
 }
@@ -639,7 +606,7 @@ TEST(SemimechDomain, IsCalibratedToHalfTheRadiusOrALittleBeyondZeroPorosity) {
   const Steel steel{200e9, 0.3, 500e6};
   EXPECT_EQ(steel.law(Configuration::simple).calibrated_end, 0.5);
   for (const Configuration configuration : {Configuration::die, Configuration::hydrostatic}) {
-    const SemimechLaw law = steel.law(configuration);
+    const Law law = steel.law(configuration);
     EXPECT_EQ(law.calibrated_end, law.stiffening.zero_porosity + 0.01);
   }
 }
@@ -678,8 +645,7 @@ TEST(SemimechForce, IsThatOfHertzTimesAFactorWithinTheRangeOfItsConfiguration) {
        {Row{Configuration::simple, 1.35, 2.20, 3.06, 3.07}, Row{Configuration::die, 1.42, 2.30, 3.21, 3.22},
         Row{Configuration::hydrostatic, 1.58, 2.57, 3.58, 3.59}}) {
     const auto factor = [&](double lambda) {
-      const SemimechLaw law =
-          make_semimech({.modulus_over_yield = lambda, .bulk_over_yield = lambda}, row.configuration);
+      const Law law = make_law({.modulus_over_yield = lambda, .bulk_over_yield = lambda}, row.configuration);
       const double x = 1e-9 * law.yield_approach;
       return state_at(law, x).force / (4.0 / 3.0 * lambda * x * std::sqrt(x));
     };
@@ -693,7 +659,7 @@ TEST(SemimechForce, IsThatOfHertzTimesAFactorWithinTheRangeOfItsConfiguration) {
 TEST(SemimechMinimum, IsWhereASixthOfTheDensityTimesTheShareInContactIsTheConstantOfTheSource) {
   for (const double lambda : {123.41, 1099.0, 5933.40}) {
     for (const Configuration configuration : {Configuration::die, Configuration::hydrostatic}) {
-      const SemimechLaw law = make_semimech({.modulus_over_yield = lambda, .bulk_over_yield = lambda}, configuration);
+      const Law law = make_law({.modulus_over_yield = lambda, .bulk_over_yield = lambda}, configuration);
       const double x = law.fall.end;
       const double half_face = configuration == Configuration::die ? 1.0 : 1.0 - x;
       const double share = pi * std::pow(contact_radius(law.radius, x).value / (2.0 * half_face), 2);
@@ -719,7 +685,7 @@ TEST(SemimechBoundaries, BearTheNamesOfTheirEvents) {
 
 TEST(SemimechBoundaries, BelongToTheRegimeBefore) {
   for (const Configuration configuration : k_configurations) {
-    const SemimechLaw law = Steel{200e9, 0.3, 200e6}.law(configuration);
+    const Law law = Steel{200e9, 0.3, 200e6}.law(configuration);
     Regime before = Regime::elastic;
     for (const auto& [event, x, beyond] : boundaries(law)) {
       EXPECT_EQ(regime_at(law, x), before) << configuration << ", " << event;
@@ -729,141 +695,5 @@ TEST(SemimechBoundaries, BelongToTheRegimeBefore) {
   }
 }
 
-// --- lateral contacts of the die
-
-class SemimechLateral : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(SemimechLateral, AgreesWithFiftyDigits) {
-  const Table table = reference(std::string("secondary_die_") + GetParam());
-  const Steel steel{header_number(table, "E"), header_number(table, "nu"), header_number(table, "sigma_y")};
-  const SemimechLaw law = steel.law(Configuration::die);
-  const LateralLaw lateral = make_lateral(law);
-  constexpr double tolerance = 1e-13;
-  EXPECT_LE(relative_error(lateral.exponent, header_number(table, "omega")), tolerance);
-  EXPECT_LE(relative_error(std::exp(lateral.log_coefficient), header_number(table, "tau_hat")), tolerance);
-  EXPECT_NEAR(lateral.onset, header_number(table, "x_onset"), 8.3e-5);
-  int small = 0, large = 0;
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const double x = number(table, row, "gamma_over_2R");
-    const auto expect = [&](std::string_view column, double actual) {
-      const double expected = number(table, row, column);
-      EXPECT_LE(relative_error(actual, expected), tolerance)  // largest error found: 1.9e-15 (1.0e-14 for P)
-          << column << " at x = " << x << ": " << actual << " instead of " << expected;
-    };
-    const ContactState state = lateral_state_at(law, lateral, x);
-    if (x <= LateralLaw::small_range_end) {
-      ++small;
-      const auto [own, slope] = lateral_approach(lateral, x);
-      expect("gamma_s_over_2R", own);
-      expect("dxs_dx", slope);
-      expect("a_s_over_R", state.contact_radius);
-      expect("Hbar_s", state.pressure);
-      expect("P_s_over_sigma_yR2", state.force);
-      expect("dP_s_dx", state.force_by_approach);
-      if (relative_error(x, lateral.yield_approach) > 1e-14) {
-        EXPECT_EQ(name(state.regime), word(table, row, "regime")) << "x = " << x;
-      }
-    } else if (x >= lateral.onset) {
-      ++large;
-      expect("Hbar_s", state.pressure);
-      EXPECT_TRUE(std::isnan(state.force)) << "x = " << x;
-      EXPECT_TRUE(std::isnan(state.contact_radius)) << "x = " << x;
-    }
-  }
-  EXPECT_GE(small, 20);
-  EXPECT_GE(large, 15);
-}
-
-INSTANTIATE_TEST_SUITE_P(Semimech, SemimechLateral, ::testing::Values("01", "09", "17"),
-                         [](const auto& instance) { return std::string(instance.param); });
-
-TEST(SemimechLateralOnset, MeetsThePrintedTable) {
-  const Table table = reference("table_2_4");
-  ASSERT_EQ(table.row_count(), 5u);
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const double lambda = number(table, row, "lambda");
-    EXPECT_EQ(lateral_onset(lambda), number(table, row, "x_onset"));
-    // Printed to 4 digits; the curve through them is off by 8.3e-5 at most.
-    EXPECT_NEAR(lateral_onset(lambda * 1.002), number(table, row, "x_onset"), 1e-4);
-  }
-}
-
-TEST(SemimechLateralOnset, StaysInTheRangeOfTheTable) {
-  EXPECT_EQ(lateral_onset(22.1), lateral_onset(160.0));
-  EXPECT_EQ(lateral_onset(1e8), lateral_onset(5000.0));
-  EXPECT_GT(lateral_onset(163.08), lateral_onset(164.0));
-}
-
-TEST(SemimechLateralContacts, AreUndefinedBetweenTheirTwoRanges) {
-  const SemimechLaw law = Steel{200e9, 0.3, 200e6}.law(Configuration::die);
-  const LateralLaw lateral = make_lateral(law);
-  for (const double x : {std::nextafter(0.1, 1.0), 0.25, std::nextafter(lateral.onset, 0.0)}) {
-    const ContactState state = lateral_state_at(law, lateral, x);
-    EXPECT_EQ(state.regime, Regime::undefined) << "x = " << x;
-    EXPECT_TRUE(std::isnan(state.pressure) && std::isnan(state.force) && std::isnan(state.contact_radius)) << x;
-  }
-  EXPECT_EQ(lateral_state_at(law, lateral, 0.1).regime, Regime::elastic_plastic);
-  EXPECT_EQ(lateral_state_at(law, lateral, lateral.onset).regime, Regime::low_compressibility);
-  EXPECT_EQ(lateral_state_at(law, lateral, law.stiffening.zero_porosity + 0.001).regime, Regime::elastic_volumetric);
-}
-
-TEST(SemimechLateralContacts, YieldWhereTheirOwnApproachReachesTheYieldPoint) {
-  // Printed to 3 digits: 0.0260 and 0.0216 at the ends of the fitted range.
-  const auto yield = [](double lambda) {
-    return make_lateral(make_semimech({lambda, 0.5 * lambda}, Configuration::die)).yield_approach;
-  };
-  EXPECT_NEAR(yield(163.08), 0.0260, 5e-5);
-  EXPECT_NEAR(yield(4953.6), 0.0216, 5e-5);
-  for (const Steel& steel : steels_of_the_source()) {
-    const SemimechLaw law = steel.law(Configuration::die);
-    const LateralLaw lateral = make_lateral(law);
-    const double x = lateral.yield_approach;
-    EXPECT_LE(relative_error(lateral_state_at(law, lateral, x).pressure, 1.1), 1e-14) << steel;
-    EXPECT_EQ(lateral_state_at(law, lateral, x * (1.0 - 1e-12)).regime, Regime::elastic) << steel;
-    EXPECT_EQ(lateral_state_at(law, lateral, x * (1.0 + 1e-12)).regime, Regime::elastic_plastic) << steel;
-  }
-}
-
-TEST(SemimechLateralContacts, HaveTheDerivativesOfTheirStates) {
-  for (const Steel& steel : steels_of_the_source()) {
-    const SemimechLaw law = steel.law(Configuration::die);
-    const LateralLaw lateral = make_lateral(law);
-    for (const double x : {0.003, 0.012, 0.04, 0.09, lateral.onset + 0.02}) {
-      const ContactState state = lateral_state_at(law, lateral, x);
-      const auto error = [&](auto member, double derivative) {
-        return relative_error(
-            central_difference([&](double at) { return lateral_state_at(law, lateral, at).*member; }, x, 1e-3 * x),
-            derivative);
-      };
-      EXPECT_LE(error(&ContactState::pressure, state.pressure_by_approach), 1e-10) << steel << ", x = " << x;
-      if (x > LateralLaw::small_range_end) continue;
-      EXPECT_LE(error(&ContactState::force, state.force_by_approach), 1e-10) << steel << ", x = " << x;
-      EXPECT_LE(error(&ContactState::contact_radius, state.contact_radius_by_approach), 1e-10) << steel;
-    }
-  }
-}
-
-TEST(SemimechLateralContacts, HaveBoundariesAndADomainOfTheirOwn) {
-  const SemimechLaw law = Steel{200e9, 0.3, 200e6}.law(Configuration::die);
-  const LateralLaw lateral = make_lateral(law);
-  const auto list = boundaries(law, lateral);
-  ASSERT_EQ(list.size(), 4u);
-  EXPECT_EQ(list[0].event, "yield");
-  EXPECT_EQ(list[1].event, "");
-  EXPECT_EQ(list[1].approach, 0.1);
-  EXPECT_EQ(list[1].beyond, Regime::undefined);
-  EXPECT_EQ(list[2].event, "secondary-onset");
-  EXPECT_EQ(list[2].beyond, Regime::low_compressibility);
-  EXPECT_EQ(list[3].approach, law.stiffening.zero_porosity);
-  EXPECT_EQ(list[3].beyond, Regime::elastic_volumetric);
-  EXPECT_EQ(lateral_state_in(law, lateral, Regime::open, 0.0).force, 0.0);
-  for (const Configuration configuration : {Configuration::simple, Configuration::hydrostatic}) {
-    const std::string message = refusal<std::invalid_argument>([&] {
-      return make_lateral(Steel{200e9, 0.3, 200e6}.law(configuration));
-    });
-    EXPECT_TRUE(contains(message, name(configuration))) << message;
-  }
-}
-
 }  // namespace
-}  // namespace monograin::plastic::semimech_test
+}  // namespace monograin::semimech::law_test
