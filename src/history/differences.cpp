@@ -7,6 +7,34 @@
 #include "system/resolution.hpp"
 
 namespace monograin {
+namespace {
+
+constexpr double k_finest_share = 1e-2;  // step of a second pair of runs over that of the first one
+
+constexpr std::array<double, 2> k_at_no_distance{k_infinity, k_infinity};  // no event comes to the instant of the row
+
+/// Truncation of a central difference next to a singularity.
+struct PowerTruncation {
+  double value = 0.0;
+  double error = k_infinity;
+};
+
+/// Truncation of a curve that is a power n of the distance from an event, if the bend shows one near n = 1/2 or 3/2.
+/// @param bend      f'' h
+/// @param distance  x, of the key's value from the one at which the event comes to the row
+PowerTruncation truncation_of_power(double slope, double bend, double step, double distance) {
+  constexpr double k_least = 0.3;  // |n - 1| of such a curve; that of a smooth one is smaller
+  constexpr double k_greatest = 1.0;
+  constexpr double k_nearest = 10.0;     // steps from the event; nearer to it, further terms of the series count
+  constexpr double k_least_error = 0.1;  // of the truncation, relative
+  const double order = distance * bend / (step * slope);  // n - 1
+  const bool is_power = std::abs(order) > k_least && std::abs(order) < k_greatest;
+  if (!is_power || !(std::abs(distance) > k_nearest * step)) return {};
+  const double truncation = step / distance * bend * (order - 1.0) / 6.0;
+  return {truncation, std::abs(truncation) * std::max(k_least_error, std::abs(std::abs(order) - 0.5))};
+}
+
+}  // namespace
 
 Differences::Differences(const Table& history, const Segments& base, const Table& events,
                          std::span<const std::size_t> columns, double noise, double share, double value,
@@ -19,10 +47,15 @@ Differences::Differences(const Table& history, const Segments& base, const Table
       share_(share),
       value_(std::abs(value)),
       centre_(centre),
-      magnitudes_(history.columns().size()) {}
+      magnitudes_(history.columns().size()),
+      shifts_(base.corners().size(), k_nan) {}
 
 bool Differences::make_pairs(const RunPair& run_pair, bool may_refine) {
   if (!add_pair(run_pair, step(), base_.output_instants())) return false;
+  for (std::size_t corner = 0; corner < shifts_.size(); ++corner) {
+    const auto times = partnerships_[0].at_row(base_.corners()[corner].front(), k_time_column);
+    if (times) shifts_[corner] = (times->upper - times->lower) / (2.0 * step());
+  }
   for (const std::size_t column : columns_) {
     magnitudes_[column].value = largest_of(history_.row_count(), [&](std::size_t r) { return history_.at(r, column); });
     magnitudes_[column].derivative = largest_derivative(column);
@@ -33,13 +66,15 @@ bool Differences::make_pairs(const RunPair& run_pair, bool may_refine) {
 
 Quotient Differences::in_row(std::size_t row, std::size_t column) const {
   return best([&](const Partnership& of) { return of.at_row(row, column); }, magnitudes_[column],
-              base_.side(row) != RowSide::output);
+              base_.side(row) != RowSide::output, distances_of(row));
 }
 
 double Differences::at_event(std::size_t row, std::size_t column) const {
   const auto in_history = history_.find(events_.columns()[column].name);
   if (!in_history) return k_nan;
-  return best([&](const Partnership& of) { return of.at_event(row, column); }, magnitudes_[*in_history], true).value;
+  return best([&](const Partnership& of) { return of.at_event(row, column); }, magnitudes_[*in_history], true,
+              k_at_no_distance)
+      .value;
 }
 
 double Differences::error() const {
@@ -69,9 +104,20 @@ bool Differences::depends(std::size_t column) const {
   return magnitudes_[column].derivative > 10.0 * noise_ * magnitudes_[column].value / step();
 }
 
+Differences::Distances Differences::distances_of(std::size_t row) const {
+  Distances distances = k_at_no_distance;
+  if (base_.side(row) != RowSide::output) return distances;
+  const std::size_t end = base_.segment(row);  // corner at which the segment of the row ends
+  const auto distance = [&](std::size_t corner) {
+    return (base_.time(base_.corners()[corner].front()) - base_.time(row)) / shifts_[corner];
+  };
+  if (end > 0) distances[0] = distance(end - 1);
+  if (end < shifts_.size()) distances[1] = distance(end);
+  return distances;
+}
+
 void Differences::refine(const RunPair& run_pair) {
   constexpr double k_too_large = 1e-7;  // over the largest derivative of the column
-  constexpr double k_finest_share = 1e-2;
   double share = 1.0;
   std::vector<bool> is_coarse(history_.row_count(), false);
   for (const std::size_t column : columns_) {
@@ -79,7 +125,7 @@ void Differences::refine(const RunPair& run_pair) {
     for (std::size_t row = 0; row < history_.row_count(); ++row) {
       const auto values = partnerships_[0].at_row(row, column);
       if (!values) continue;
-      const Quotient of = quotient(*values, magnitudes_[column], step(), false);
+      const Quotient of = quotient(*values, magnitudes_[column], step(), false, distances_of(row));
       const double size = magnitudes_[column].derivative;
       if (!(of.truncation > std::max(k_too_large * size, of.round_off))) continue;  // NaN is not coarse
       is_coarse[row] = true;
@@ -91,7 +137,8 @@ void Differences::refine(const RunPair& run_pair) {
   add_pair(run_pair, std::max(share, k_finest_share) * step(), instants);
 }
 
-Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, double step, bool is_at_event) const {
+Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, double step, bool is_at_event,
+                               const Distances& distances) const {
   constexpr double k_as_large = 1e-3;
   constexpr double k_counts = 1e-6;
   Quotient result{(of.upper - of.lower) / (2.0 * step), 0.0, noise_ * magnitudes.value / step};
@@ -101,16 +148,26 @@ Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, d
   const bool is_round_off = is_at_event && of.second_difference() > k_as_large * of.largest();
   if (is_round_off && size > 0.0 && 0.5 * bend > k_counts * size) return {k_nan, 0.0, 0.0};
   const bool may_be_singular = slope > 0.1 * size && bend > result.round_off;
-  result.truncation = std::max(step / value_ * bend / 6.0, may_be_singular ? 0.5 * bend * bend / slope : 0.0);
+  result.truncation = step / value_ * bend / 6.0;
+  if (may_be_singular) {
+    PowerTruncation of_power;
+    for (const double distance : distances) {
+      const PowerTruncation here =
+          truncation_of_power(result.value, of.signed_second_difference() / step, step, distance);
+      if (here.error < of_power.error) of_power = here;
+    }
+    result.value -= of_power.value;
+    result.truncation = std::max(result.truncation, std::min(of_power.error, 0.5 * bend * bend / slope));
+  }
   return result;
 }
 
 Quotient Differences::best(const std::function<std::optional<Triple>(const Partnership&)>& values,
-                           const Magnitudes& magnitudes, bool is_at_event) const {
+                           const Magnitudes& magnitudes, bool is_at_event, const Distances& distances) const {
   std::array<Quotient, 2> of_pairs;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     if (const std::optional<Triple> of = values(partnerships_[k])) {
-      of_pairs[k] = quotient(*of, magnitudes, pairs_[k]->step, is_at_event);
+      of_pairs[k] = quotient(*of, magnitudes, pairs_[k]->step, is_at_event, distances);
     }
   }
   auto& [coarse, fine] = of_pairs;

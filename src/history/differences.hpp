@@ -1,6 +1,7 @@
 /// Derivatives of a history as differences of runs with neighbouring values of a number.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -36,8 +37,10 @@ struct Quotient {
   [[nodiscard]] double error() const noexcept { return truncation + round_off; }
 };
 
-/// Derivatives of history and events with respect to one key, as central differences. Rows where the runs show that
-/// truncation exceeds what round-off allows get them from a second pair of runs, which writes no other rows.
+/// Derivatives of history and events with respect to one key, as central differences. Near an event that moves with the
+/// key, curves may be a power of the distance from it, as next to a square root: their truncation is computed and
+/// removed. Rows where the runs show that truncation still exceeds what round-off allows get their derivatives from a
+/// second pair of runs, which writes no other rows.
 class Differences {
  public:
   using RunPair = std::function<std::unique_ptr<NeighbourPair>(double step, const std::vector<double>& instants)>;
@@ -62,22 +65,30 @@ class Differences {
   [[nodiscard]] double error() const;
 
  private:
+  /// Distances of the key's value from those for which the beginning and the end of the segment come to the instant of
+  /// a row; positive if the key's value is larger, not finite without such a value.
+  using Distances = std::array<double, 2>;
+
   [[nodiscard]] Quotient in_row(std::size_t row, std::size_t column) const;
   bool add_pair(const RunPair& run_pair, double step, const std::vector<double>& instants);
   [[nodiscard]] double largest_derivative(std::size_t column) const;
   /// False if a column does not depend on the number.
   [[nodiscard]] bool depends(std::size_t column) const;
+  [[nodiscard]] Distances distances_of(std::size_t row) const;
   /// Makes a second pair of runs if truncation is too large in some rows. Its step balances the two errors in the worst
   /// of them.
   void refine(const RunPair& run_pair);
-  /// Truncation of a central difference from its bend f'' h, which is f''' h^2/6: with f''' = f''/p, as in a smooth
-  /// curve; or with f''' = 3 f''^2/f', as next to a square root, where derivatives are large. In a row at an event, a
-  /// column may be nothing but round-off; its values then differ as much as they are large, and it has no derivative.
-  [[nodiscard]] Quotient quotient(const Triple& of, const Magnitudes& magnitudes, double step, bool is_at_event) const;
+  /// Central difference without its truncation next to an event, and its errors. Truncation f''' h^2/6 follows from the
+  /// bend f'' h: with f''' = f''/p, as in a smooth curve; with f''' = (n - 2) f''/x where the bend shows that the curve
+  /// is a power n of the distance x from an event, and the truncation is subtracted; or with f''' = 3 f''^2/f', as next
+  /// to another square root, where derivatives are large. In a row at an event, a column may be nothing but round-off;
+  /// its values then differ as much as they are large, and it has no derivative.
+  [[nodiscard]] Quotient quotient(const Triple& of, const Magnitudes& magnitudes, double step, bool is_at_event,
+                                  const Distances& distances) const;
   /// The more accurate quotient of the two pairs. Where they differ by more than round-off, their difference is the
   /// truncation of the first one.
   [[nodiscard]] Quotient best(const std::function<std::optional<Triple>(const Partnership&)>& values,
-                              const Magnitudes& magnitudes, bool is_at_event) const;
+                              const Magnitudes& magnitudes, bool is_at_event, const Distances& distances) const;
 
   const Table& history_;
   const Segments& base_;
@@ -90,6 +101,7 @@ class Differences {
   std::vector<Magnitudes> magnitudes_;  ///< of all columns of the history
   std::vector<std::unique_ptr<NeighbourPair>> pairs_;
   std::vector<Partnership> partnerships_;  ///< one for each pair
+  std::vector<double> shifts_;             ///< d(time)/d(key) of the corners of the history; NaN: unknown
 };
 
 }  // namespace monograin

@@ -32,7 +32,8 @@ struct Triple {
   double upper = k_nan;
 
   [[nodiscard]] double largest() const { return std::max({std::abs(lower), std::abs(centre), std::abs(upper)}); }
-  [[nodiscard]] double second_difference() const { return std::abs(upper + lower - 2.0 * centre); }
+  [[nodiscard]] double signed_second_difference() const { return upper + lower - 2.0 * centre; }
+  [[nodiscard]] double second_difference() const { return std::abs(signed_second_difference()); }
 };
 
 /// Runs with a smaller and a larger value of the key.
