@@ -34,6 +34,34 @@ PowerTruncation truncation_of_power(double slope, double bend, double step, doub
   return {truncation, std::abs(truncation) * std::max(k_least_error, std::abs(std::abs(order) - 0.5))};
 }
 
+/// Rows of a column, compared with those for a smaller and a larger value of a number. At a kink, the derivatives on
+/// the two sides of the number differ in many rows; next to a singularity, they do in few.
+class SidesOfColumn {
+ public:
+  /// @param derivative  mean of the two sides in a row
+  /// @param difference  magnitude of their difference, without round-off
+  void add(double derivative, double difference) {
+    if (std::isnan(difference)) return;
+    largest_derivative_ = std::fmax(largest_derivative_, std::abs(derivative));
+    differences_.push_back(difference);
+  }
+
+  /// Largest difference over the largest derivative. 0 if a difference of 1 % has fewer than one row in ten.
+  [[nodiscard]] double difference() const {
+    constexpr double k_sharp = 1e-2;
+    constexpr std::ptrdiff_t k_rows = 10;
+    const auto rows = static_cast<std::ptrdiff_t>(differences_.size());
+    const double least = k_sharp * largest_derivative_;
+    const auto sharp = std::ranges::count_if(differences_, [least](double of_row) { return of_row > least; });
+    if (sharp == 0 || sharp * k_rows < rows) return 0.0;
+    return *std::ranges::max_element(differences_) / largest_derivative_;
+  }
+
+ private:
+  double largest_derivative_ = 0.0;
+  std::vector<double> differences_;  ///< one for each row
+};
+
 }  // namespace
 
 Differences::Differences(const Table& history, const Segments& base, const Table& events,
@@ -60,7 +88,8 @@ bool Differences::make_pairs(const RunPair& run_pair, bool may_refine) {
     magnitudes_[column].value = largest_of(history_.row_count(), [&](std::size_t r) { return history_.at(r, column); });
     magnitudes_[column].derivative = largest_derivative(column);
   }
-  if (may_refine) refine(run_pair);
+  find_kink(run_pair);
+  if (may_refine && kink_ == 0.0) refine(run_pair);
   return true;
 }
 
@@ -116,6 +145,35 @@ Differences::Distances Differences::distances_of(std::size_t row) const {
   return distances;
 }
 
+void Differences::find_kink(const RunPair& run_pair) {
+  constexpr double k_smaller = 0.1;       // step at which the sides are compared again, over the first one
+  constexpr std::size_t k_compared = 20;  // rows, about, that are compared there
+  const auto difference_of_sides = [&](const Partnership& of, std::size_t column, double step) {
+    const double round_off = noise_ * magnitudes_[column].value;
+    SidesOfColumn sides;
+    for (std::size_t row = 0; row < history_.row_count(); ++row) {
+      const auto values = base_.side(row) == RowSide::output ? of.at_row(row, column) : std::nullopt;
+      if (!values) continue;
+      sides.add((values->upper - values->lower) / (2.0 * step), (values->second_difference() - round_off) / step);
+    }
+    return sides.difference();
+  };
+  double largest = 0.0;
+  std::size_t sharpest = 0;
+  for (const std::size_t column : columns_) {
+    const double difference = depends(column) ? difference_of_sides(partnerships_[0], column, step()) : 0.0;
+    if (difference > largest) sharpest = column;
+    largest = std::max(largest, difference);
+  }
+  if (largest == 0.0) return;
+  const std::size_t stride = history_.row_count() / k_compared + 1;
+  const auto nearer =
+      run_pair(k_smaller * step(), base_.output_instants([&](std::size_t row) { return row % stride == 0; }));
+  if (!nearer) return;
+  const Partnership of_nearer(history_, base_, events_, *nearer, centre_);
+  if (difference_of_sides(of_nearer, sharpest, k_smaller * step()) > 0.0) kink_ = largest;
+}
+
 void Differences::refine(const RunPair& run_pair) {
   constexpr double k_too_large = 1e-7;  // over the largest derivative of the column
   double share = 1.0;
@@ -149,7 +207,9 @@ Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, d
   if (is_round_off && size > 0.0 && 0.5 * bend > k_counts * size) return {k_nan, 0.0, 0.0};
   const bool may_be_singular = slope > 0.1 * size && bend > result.round_off;
   result.truncation = step / value_ * bend / 6.0;
-  if (may_be_singular) {
+  if (kink_ > 0.0) {
+    result.truncation = std::max(result.truncation, 0.5 * bend);
+  } else if (may_be_singular) {
     PowerTruncation of_power;
     for (const double distance : distances) {
       const PowerTruncation here =

@@ -63,6 +63,9 @@ class Differences {
   [[nodiscard]] double at_event(std::size_t row, std::size_t column) const;
   /// Largest estimated error of a column over its largest derivative.
   [[nodiscard]] double error() const;
+  /// Largest difference of the derivatives on the two sides of a kink, over the largest derivative of the column; 0 if
+  /// the curves have no kink at the key's value. Derivatives are the means of the two sides at a kink.
+  [[nodiscard]] double kink() const noexcept { return kink_; }
 
  private:
   /// Distances of the key's value from those for which the beginning and the end of the segment come to the instant of
@@ -75,6 +78,9 @@ class Differences {
   /// False if a column does not depend on the number.
   [[nodiscard]] bool depends(std::size_t column) const;
   [[nodiscard]] Distances distances_of(std::size_t row) const;
+  /// Finds out whether the curves have a kink at the key's value: the derivatives on its two sides then differ, in many
+  /// rows and however small the step is.
+  void find_kink(const RunPair& run_pair);
   /// Makes a second pair of runs if truncation is too large in some rows. Its step balances the two errors in the worst
   /// of them.
   void refine(const RunPair& run_pair);
@@ -102,6 +108,7 @@ class Differences {
   std::vector<std::unique_ptr<NeighbourPair>> pairs_;
   std::vector<Partnership> partnerships_;  ///< one for each pair
   std::vector<double> shifts_;             ///< d(time)/d(key) of the corners of the history; NaN: unknown
+  double kink_ = 0.0;
 };
 
 }  // namespace monograin

@@ -269,6 +269,12 @@ void add_differences(Run& run, const Segments& base, bool is_solved, const std::
     };
     const double error = of_key.make_pairs(run_pair, is_solved) ? of_key.error() : k_nan;
     run.sensitivities.push_back({key.key, key.value, of_key.step(), error, false, why});
+    if (of_key.kink() > 0.0) {
+      run.record.warnings.push_back(
+          fmt::format("derivatives by {}: the curves have a kink at {:.6g}, so that the derivatives on its two sides "
+                      "differ by up to {:.2g} of the largest one; the columns hold their means",
+                      key.key, key.value, of_key.kink()));
+    }
   }
   const auto at_row = [&](std::size_t key, std::size_t row, std::size_t c) { return differences[key]->at_row(row, c); };
   const auto at_event = [&](std::size_t key, std::size_t row, std::size_t c) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -706,6 +707,50 @@ TEST(Sensitivities, EndWhereTheEventsAreOthers) {
     EXPECT_FALSE(run.sensitivities[0].is_forward);
     EXPECT_TRUE(std::isfinite(derivative.front()));
     EXPECT_TRUE(std::isnan(derivative.back()));
+  }
+}
+
+// The table of unloadings has a material at E0/Gamma0 = 100, beyond which its shapes do not change.
+TEST(Sensitivities, AreMeansOfTheTwoSidesWithAWarningAtAKink) {
+  const std::string key = "material.stiffness_ratio";
+  const std::string text = compressible();
+  const std::string with = text + "\n[sensitivities]\nkeys = [\"" + key + "\"]\n";
+  const HistoryRun alone = run_of(text);
+  const HistoryRun run = run_of(with);
+  const auto is_of_kink = [](const std::string& warning) {
+    return warning.find("have a kink at 100,") < warning.size();
+  };
+  EXPECT_EQ(std::ranges::count_if(run.record.warnings, is_of_kink), 1);
+  EXPECT_LT(static_cast<double>(run.record.statistics.rhs_evaluations),
+            3.3 * static_cast<double>(alone.record.statistics.rhs_evaluations));
+  std::array<double, 3> forces{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double ratio = 100.0 + 1e-4 * (static_cast<double>(k) - 1.0);
+    const HistoryRun other = run_of(text, {fmt::format("{}={:.17g}", key, ratio), "output.times=[3.05]"});
+    std::size_t row = 1;
+    while (other.record.history.at(row, 2) != 0.0) ++row;
+    forces[k] = other.record.history.at(row, *other.record.history.find("axial.force"));
+  }
+  const HistoryRun there = run_of(with, {"output.times=[3.05]"});
+  std::size_t row = 1;
+  while (there.record.history.at(row, 2) != 0.0) ++row;
+  const double derivative = column(there, "d(axial.force)/d(" + key + ")")[row];
+  const double below = (forces[1] - forces[0]) / 1e-4;
+  const double above = (forces[2] - forces[1]) / 1e-4;
+  EXPECT_GT(std::abs(above - below), std::abs(above));
+  EXPECT_NEAR(derivative, std::midpoint(below, above), 1e-4 * std::abs(derivative));
+  EXPECT_GT(run.sensitivities[0].error, 0.3);
+}
+
+TEST(Sensitivities, HaveNoWarningBesideAKink) {
+  const std::string key = "material.stiffness_ratio";
+  const std::string with = compressible() + "\n[sensitivities]\nkeys = [\"" + key + "\"]\n";
+  for (const char* integrator : {"direct", "odeint-dopri5"}) {
+    const std::string by = fmt::format("numerics.integrator={}", integrator);
+    EXPECT_EQ(run_of(with, {by}).record.warnings.size(), run_of(compressible(), {by}).record.warnings.size() + 1);
+    const HistoryRun beside = run_of(with, {by, key + "=99"});
+    EXPECT_TRUE(beside.record.warnings == run_of(compressible(), {by, key + "=99"}).record.warnings) << integrator;
+    EXPECT_LT(beside.sensitivities[0].error, 1e-6) << integrator;
   }
 }
 
