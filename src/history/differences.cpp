@@ -76,14 +76,11 @@ Differences::Differences(const Table& history, const Segments& base, const Table
       value_(std::abs(value)),
       centre_(centre),
       magnitudes_(history.columns().size()),
-      shifts_(base.corners().size(), k_nan) {}
+      distances_(history.row_count(), k_at_no_distance) {}
 
 bool Differences::make_pairs(const RunPair& run_pair, bool may_refine) {
   if (!add_pair(run_pair, step(), base_.output_instants())) return false;
-  for (std::size_t corner = 0; corner < shifts_.size(); ++corner) {
-    const auto times = partnerships_[0].at_row(base_.corners()[corner].front(), k_time_column);
-    if (times) shifts_[corner] = (times->upper - times->lower) / (2.0 * step());
-  }
+  find_distances();
   for (const std::size_t column : columns_) {
     magnitudes_[column].value = largest_of(history_.row_count(), [&](std::size_t r) { return history_.at(r, column); });
     magnitudes_[column].derivative = largest_derivative(column);
@@ -95,7 +92,7 @@ bool Differences::make_pairs(const RunPair& run_pair, bool may_refine) {
 
 Quotient Differences::in_row(std::size_t row, std::size_t column) const {
   return best([&](const Partnership& of) { return of.at_row(row, column); }, magnitudes_[column],
-              base_.side(row) != RowSide::output, distances_of(row));
+              base_.side(row) != RowSide::output, distances_[row]);
 }
 
 double Differences::at_event(std::size_t row, std::size_t column) const {
@@ -110,9 +107,14 @@ double Differences::error() const {
   double error = 0.0;
   for (const std::size_t column : columns_) {
     if (!depends(column)) continue;
-    const double of_column =
-        largest_of(history_.row_count(), [&](std::size_t row) { return in_row(row, column).error(); });
-    error = std::max(error, of_column / largest_derivative(column));
+    double largest = 0.0;
+    double of_column = 0.0;
+    for (std::size_t row = 0; row < history_.row_count(); ++row) {
+      const Quotient here = in_row(row, column);
+      largest = std::fmax(largest, std::abs(here.value));
+      of_column = std::fmax(of_column, here.error());
+    }
+    error = std::max(error, of_column / largest);
   }
   return error;
 }
@@ -133,16 +135,22 @@ bool Differences::depends(std::size_t column) const {
   return magnitudes_[column].derivative > 10.0 * noise_ * magnitudes_[column].value / step();
 }
 
-Differences::Distances Differences::distances_of(std::size_t row) const {
-  Distances distances = k_at_no_distance;
-  if (base_.side(row) != RowSide::output) return distances;
-  const std::size_t end = base_.segment(row);  // corner at which the segment of the row ends
-  const auto distance = [&](std::size_t corner) {
-    return (base_.time(base_.corners()[corner].front()) - base_.time(row)) / shifts_[corner];
-  };
-  if (end > 0) distances[0] = distance(end - 1);
-  if (end < shifts_.size()) distances[1] = distance(end);
-  return distances;
+void Differences::find_distances() {
+  const auto& corners = base_.corners();
+  std::vector<double> shifts(corners.size(), k_nan);  // d(time)/d(key)
+  for (std::size_t corner = 0; corner < corners.size(); ++corner) {
+    const auto times = partnerships_[0].at_row(corners[corner].front(), k_time_column);
+    if (times) shifts[corner] = (times->upper - times->lower) / (2.0 * step());
+  }
+  for (std::size_t row = 0; row < history_.row_count(); ++row) {
+    if (base_.side(row) != RowSide::output) continue;
+    const auto distance = [&](std::size_t corner) {
+      return (base_.time(corners[corner].front()) - base_.time(row)) / shifts[corner];
+    };
+    const std::size_t end = base_.segment(row);  // corner at which the segment of the row ends
+    if (end > 0) distances_[row][0] = distance(end - 1);
+    if (end < corners.size()) distances_[row][1] = distance(end);
+  }
 }
 
 void Differences::find_kink(const RunPair& run_pair) {
@@ -183,7 +191,7 @@ void Differences::refine(const RunPair& run_pair) {
     for (std::size_t row = 0; row < history_.row_count(); ++row) {
       const auto values = partnerships_[0].at_row(row, column);
       if (!values) continue;
-      const Quotient of = quotient(*values, magnitudes_[column], step(), false, distances_of(row));
+      const Quotient of = quotient(*values, magnitudes_[column], step(), false, distances_[row]);
       const double size = magnitudes_[column].derivative;
       if (!(of.truncation > std::max(k_too_large * size, of.round_off))) continue;  // NaN is not coarse
       is_coarse[row] = true;

@@ -77,7 +77,8 @@ class Differences {
   [[nodiscard]] double largest_derivative(std::size_t column) const;
   /// False if a column does not depend on the number.
   [[nodiscard]] bool depends(std::size_t column) const;
-  [[nodiscard]] Distances distances_of(std::size_t row) const;
+  /// Finds the distances of all rows by the first pair.
+  void find_distances();
   /// Finds out whether the curves have a kink at the key's value: the derivatives on its two sides then differ, in many
   /// rows and however small the step is.
   void find_kink(const RunPair& run_pair);
@@ -107,7 +108,7 @@ class Differences {
   std::vector<Magnitudes> magnitudes_;  ///< of all columns of the history
   std::vector<std::unique_ptr<NeighbourPair>> pairs_;
   std::vector<Partnership> partnerships_;  ///< one for each pair
-  std::vector<double> shifts_;             ///< d(time)/d(key) of the corners of the history; NaN: unknown
+  std::vector<Distances> distances_;       ///< one for each row; infinite in rows at corners
   double kink_ = 0.0;
 };
 
