@@ -19,7 +19,7 @@ WallContact<Law> on_ramp(Law& law, const Ramp& ramp, bool touches) {
   WallContact<Law> c(3, ramp.start);
   std::vector<Event> log;
   if (touches) c.make(law, false, log);
-  c.set_drive(law, contacts::WallDrive(ramp, 1.0), ramp.start, false);
+  c.set_drive(law, contacts::WallDrive(ramp, 1.0), ramp.start, false, 0.0);
   return c;
 }
 

@@ -24,7 +24,7 @@ WallContact<Law> pressed(Law& law, const Ramp& ramp) {
   WallContact<Law> c;
   std::vector<Event> log;
   c.make(law, false, log);
-  c.set_drive(law, contacts::WallDrive(ramp, 1.0), ramp.start, false);
+  c.set_drive(law, contacts::WallDrive(ramp, 1.0), ramp.start, false, 0.0);
   return c;
 }
 
