@@ -23,7 +23,7 @@ class HistorySink {
   /// Evaluates the observables. @param step  number of the program's step, from 1
   virtual void observe(double time, int step, double xi, std::span<const double> y) = 0;
   /// Takes the derivatives of the row observed last: one row of ForwardSensitivities.
-  virtual void differentiate(std::span<const double> /*derivatives*/) {}
+  virtual void take_derivatives(std::span<const double> /*derivatives*/) {}
   /// Appends the row observed last to the history.
   virtual void append(RowSide side) = 0;
   /// Records an event with the state observed last.

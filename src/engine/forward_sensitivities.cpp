@@ -349,7 +349,7 @@ void ForwardSensitivities::begin_step(std::size_t step, const StepPlan& plan, st
         side.held[c] = ramp_after(side.plan, side.system(), static_cast<int>(c), side.xi, plan.leg.is_first());
       }
     }
-    side.plan = plan_step(side.scene, step, side.held, side.guard_set, side.xi, side.y);
+    side.plan = plan_leg(side.scene, step, side.held, side.guard_set, side.xi, side.y);
     side.clock = side.clock.next(side.xi, step, side.plan.leg, side.plan.duration);
     side.xi = 0.0;
     std::vector<Event> of_side;
@@ -367,7 +367,7 @@ void ForwardSensitivities::begin_step(std::size_t step, const StepPlan& plan, st
 
 void ForwardSensitivities::expect_held(bool is_held) {
   each_side([is_held](Number&, Side& side) {
-    if (side.guard_set.held_at_begin().has_value() == is_held) return;
+    if (side.guard_set.met_at_begin().has_value() == is_held) return;
     throw LostSensitivities("a condition that ends a step holds where it begins, in one of the neighbouring runs only");
   });
 }

@@ -25,11 +25,12 @@ void GuardSet::begin_step(std::span<const Condition> conditions, double xi, std:
     const double begin = value(condition, xi, y);
     const double distance = begin - condition.target;
     const double scale = std::max(std::abs(condition.target), std::abs(distance));
-    conditions_.push_back({.condition = condition,
-                           .begin = begin,
-                           .scale = scale > 0.0 ? scale : 1.0,
-                           .direction = distance < 0.0 ? 1 : -1,
-                           .is_held = equals_target(begin, condition.target) || has_ended_last_step(condition)});
+    conditions_.push_back(
+        {.condition = condition,
+         .begin = begin,
+         .scale = scale > 0.0 ? scale : 1.0,
+         .direction = distance < 0.0 ? 1 : -1,
+         .is_met_at_begin = equals_target(begin, condition.target) || has_ended_last_step(condition)});
   }
   renew();
 }
@@ -39,8 +40,8 @@ bool GuardSet::has_ended_last_step(const Condition& condition) const {
       of_last_step_, [&](const Watched& watched) { return watched.has_ended && watched.condition == condition; });
 }
 
-std::optional<std::size_t> GuardSet::held_at_begin() const noexcept {
-  const auto held = std::ranges::find_if(conditions_, &Watched::is_held);
+std::optional<std::size_t> GuardSet::met_at_begin() const noexcept {
+  const auto held = std::ranges::find_if(conditions_, &Watched::is_met_at_begin);
   if (held == conditions_.end()) return std::nullopt;
   return static_cast<std::size_t>(held - conditions_.begin());
 }

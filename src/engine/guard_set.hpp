@@ -41,7 +41,7 @@ class GuardSet {
 
   /// Index of the first condition that holds where the step began: its quantity equals its target there, or the step
   /// before has ended by it. None if none holds.
-  [[nodiscard]] std::optional<std::size_t> held_at_begin() const noexcept;
+  [[nodiscard]] std::optional<std::size_t> met_at_begin() const noexcept;
 
   /// Notes which conditions end the step: those among the guards that fired, and those whose quantities equal their
   /// targets. A condition that a jump has passed ends the step as well, but does not hold where the next step begins.
@@ -84,11 +84,11 @@ class GuardSet {
  private:
   struct Watched {
     Condition condition;
-    double begin = 0.0;      ///< value of the quantity where the step began
-    double scale = 1.0;      ///< larger of target and first distance: makes the root function of order one
-    int direction = 1;       ///< direction in which the quantity reaches the target
-    bool is_held = false;    ///< the condition held where the step began
-    bool has_ended = false;  ///< the condition has ended the step
+    double begin = 0.0;            ///< value of the quantity where the step began
+    double scale = 1.0;            ///< larger of target and first distance: makes the root function of order one
+    int direction = 1;             ///< direction in which the quantity reaches the target
+    bool is_met_at_begin = false;  ///< the condition held where the step began
+    bool has_ended = false;        ///< the condition has ended the step
   };
   [[nodiscard]] double value(const Condition& condition, double xi, std::span<const double> y);
   [[nodiscard]] double excess(const Watched& watched, double xi, std::span<const double> y);

@@ -32,7 +32,7 @@ OutputRows::OutputRows(const Output& output, const StepClock& clock, Integrator&
 
 double OutputRows::least_length() const noexcept { return output_.points * k_same_instant; }
 
-void OutputRows::begin_step() { points_.clear(); }
+void OutputRows::begin_leg() { points_.clear(); }
 
 void OutputRows::place(const Leg& leg, double end, bool may_end_elsewhere) {
   next_ = 0;
@@ -60,7 +60,7 @@ void OutputRows::place(const Leg& leg, double end, bool may_end_elsewhere) {
   }
 }
 
-void OutputRows::end_step(double xi) {
+void OutputRows::end_leg(double xi) {
   if (next_ + 1 == points_.size() && points_.back().xi == k_at_end) points_.back().xi = xi;
 }
 
@@ -87,21 +87,21 @@ void OutputRows::write_output(const Point& point) {
     integrator_.dense_sensitivities(point.xi);
     derivatives = sensitivities_->row_at(point.xi, state_, clock_);
   }
-  if (holds_)
-    held_.push_back({point, state_, {derivatives.begin(), derivatives.end()}});
+  if (is_buffering_)
+    buffer_.push_back({point, state_, {derivatives.begin(), derivatives.end()}});
   else
     write(point, state_, derivatives);
 }
 
 void OutputRows::write(const Point& point, std::span<const double> y, std::span<const double> derivatives) {
-  sink_.observe(point.time, clock_.label(), point.xi, y);
-  sink_.differentiate(derivatives);
+  sink_.observe(point.time, clock_.step_label(), point.xi, y);
+  sink_.take_derivatives(derivatives);
   sink_.append(RowSide::output);
 }
 
 void OutputRows::observe(double xi, std::span<const double> y) {
-  sink_.observe(clock_.time(xi), clock_.label(), xi, y);
-  if (sensitivities_ != nullptr) sink_.differentiate(sensitivities_->row_here());
+  sink_.observe(clock_.time(xi), clock_.step_label(), xi, y);
+  if (sensitivities_ != nullptr) sink_.take_derivatives(sensitivities_->row_here());
 }
 
 void OutputRows::write_first(std::span<const double> y, std::span<const Event> events) {
@@ -136,20 +136,20 @@ void OutputRows::close_instant(double xi, std::span<const double> y, std::span<c
   for (const Event& event : events) sink_.event(event);
 }
 
-void OutputRows::hold() {
-  holds_ = true;
-  next_when_held_ = next_;
+void OutputRows::buffer() {
+  is_buffering_ = true;
+  first_buffered_ = next_;
 }
 
-void OutputRows::drop_held() {
-  holds_ = false;
-  next_ = next_when_held_;
-  held_.clear();
+void OutputRows::drop_buffer() {
+  is_buffering_ = false;
+  next_ = first_buffered_;
+  buffer_.clear();
 }
 
-void OutputRows::release_held() {
-  holds_ = false;
-  for (const HeldRow& row : std::exchange(held_, {})) write(row.point, row.state, row.derivatives);
+void OutputRows::flush_buffer() {
+  is_buffering_ = false;
+  for (const BufferedRow& row : std::exchange(buffer_, {})) write(row.point, row.state, row.derivatives);
 }
 
 }  // namespace monograin

@@ -23,18 +23,18 @@ class OutputRows {
              ForwardSensitivities* sensitivities, std::size_t unknowns);
 
   /// True if output points divide a step evenly up to its end, which must be known before they are placed.
-  [[nodiscard]] bool divide_step() const noexcept { return output_.times.empty() && output_.points > 1; }
+  [[nodiscard]] bool needs_end_of_step() const noexcept { return output_.times.empty() && output_.points > 1; }
   /// Shortest length of a step that has room for rows; a shorter one is round-off.
   [[nodiscard]] double least_length() const noexcept;
 
-  /// Forgets the output points of the last step.
-  void begin_step();
-  /// Places the output points of a step that lie in one of its legs.
+  /// Forgets the output points of the last leg.
+  void begin_leg();
+  /// Places the output points of a step that lie in the present leg.
   /// @param end                share of the step's time at which the step ends
   /// @param may_end_elsewhere  the last point is wherever the step will end
   void place(const Leg& leg, double end, bool may_end_elsewhere);
   /// Puts that last point where the step has ended.
-  void end_step(double xi);
+  void end_leg(double xi);
 
   /// Tells of output times beyond the end [s] of the program; nothing if there are none.
   [[nodiscard]] std::optional<std::string> note_unreached_times(double end) const;
@@ -59,21 +59,20 @@ class OutputRows {
   /// Writes the row just after an event or corner, and the events between the rows.
   void close_instant(double xi, std::span<const double> y, std::span<const Event> events);
 
-  /// Keeps the rows of output points back from here on.
-  void hold();
-  /// Forgets the rows kept back; their output points come again.
-  void drop_held();
-  /// Writes the rows kept back.
-  void release_held();
+  /// Collects the rows of output points from here on, and does not write them yet.
+  void buffer();
+  /// Forgets the rows in the buffer; their output points come again.
+  void drop_buffer();
+  /// Writes the rows in the buffer, and those that follow at once.
+  void flush_buffer();
 
  private:
-  /// An output point of the present step.
+  /// An output point of the present leg.
   struct Point {
     double xi = 0.0;
     double time = 0.0;
   };
-  /// A row that is kept back.
-  struct HeldRow {
+  struct BufferedRow {
     Point point;
     std::vector<double> state;
     std::vector<double> derivatives;
@@ -92,9 +91,9 @@ class OutputRows {
   std::size_t next_ = 0;  ///< first point that is not written yet
   double reached_ = 0.0;  ///< where the present instant was opened
   bool is_paused_ = false;
-  bool holds_ = false;
-  std::size_t next_when_held_ = 0;
-  std::vector<HeldRow> held_;
+  bool is_buffering_ = false;
+  std::size_t first_buffered_ = 0;  ///< output point
+  std::vector<BufferedRow> buffer_;
   std::vector<double> state_;  ///< at an output point
 };
 

@@ -36,21 +36,26 @@ const QuantityWords& words_of(Quantity quantity) {
   return *std::ranges::find(k_quantities, quantity, &QuantityWords::quantity);
 }
 
-/// Ramp of a channel in a step: from the present value of the controlled quantity to the step's target.
-/// @param held  what the channel keeps when the step says nothing
-Ramp ramp_of(const Step& step, int channel, const Ramp& held, HybridSystem& system, const GuardSet& guard_set,
-             double xi, std::span<const double> y) {
+struct StateAt {
+  HybridSystem& system;
+  double xi = 0.0;
+  std::span<const double> y;
+};
+
+/// Ramp of a channel in a leg: from the present value of the controlled quantity to the step's target.
+/// @param resting  what the channel keeps if the step does not move it
+Ramp ramp_of(const Step& step, int channel, const Ramp& resting, const StateAt& state, const GuardSet& guard_set) {
   const bool is_detaching = step.kind == Step::Kind::detach;
   const std::optional<Control> control = is_detaching ? Control::displacement : control_of(step.kind);
-  if (!control) return held;
-  Ramp ramp = held;
+  if (!control) return resting;
+  Ramp ramp = resting;
   if (ramp.control != *control) {
-    const double present = system.controlled(*control, channel, xi, y);
+    const double present = state.system.controlled(*control, channel, state.xi, state.y);
     ramp = {present, present, *control};
   }
   if (is_detaching) {
     // Withdrawal by one apparent radius: no contact stays closed that far.
-    ramp.end = ramp.start - system.quantity(Quantity::apparent_radius, channel, xi, y);
+    ramp.end = ramp.start - state.system.quantity(Quantity::apparent_radius, channel, state.xi, state.y);
     return ramp;
   }
   // The value at which a condition has ended the last step has an integrator's error: a ramp to that value holds it.
@@ -69,18 +74,19 @@ Ramp without_pull(Ramp ramp) {
 
 }  // namespace
 
-StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> held, const GuardSet& guard_set,
-                   double xi, std::span<const double> y) {
+StepPlan plan_leg(const Scene& scene, std::size_t leg, std::span<const Ramp> resting, const GuardSet& guard_set,
+                  double xi, std::span<const double> y) {
   StepPlan plan;
-  plan.leg = scene.longest_program()[step].leg;
+  plan.leg = scene.longest_program()[leg].leg;
+  bool has_duration = false;
   for (std::size_t c = 0; c < scene.channels.size(); ++c) {
     const Channel& channel = scene.channels[c];
-    plan.ramps.push_back(held[c]);
-    plan.prescribed.push_back(held[c]);
-    if (step >= channel.program.size()) continue;
-    const Step& of_channel = channel.program[step];
+    plan.ramps.push_back(resting[c]);
+    plan.prescribed.push_back(resting[c]);
+    if (leg >= channel.program.size()) continue;
+    const Step& of_channel = channel.program[leg];
     const int index = static_cast<int>(c);
-    const Ramp ramp = ramp_of(of_channel, index, held[c], *scene.system, guard_set, xi, y);
+    const Ramp ramp = ramp_of(of_channel, index, resting[c], {*scene.system, xi, y}, guard_set);
     plan.prescribed.back() = ramp;
     const bool is_lost = ramp.control == Control::force && ramp.start < 0.0 && scene.system->is_open(index);
     plan.ramps.back() = is_lost ? without_pull(ramp) : ramp;
@@ -95,15 +101,15 @@ StepPlan plan_step(const Scene& scene, std::size_t step, std::span<const Ramp> h
     if (!of_channel.duration && !of_channel.rate) continue;  // takes as long as the others
     const double duration =
         of_channel.duration ? *of_channel.duration : std::abs(ramp.end - ramp.start) / *of_channel.rate;
-    if (plan.duration >= 0.0 &&
-        std::abs(duration - plan.duration) > k_same_number * std::max(duration, plan.duration)) {
+    if (has_duration && std::abs(duration - plan.duration) > k_same_number * std::max(duration, plan.duration)) {
       throw Stop{
           {.limit = Limit::unequal_durations},
           fmt::format("step {}: the walls of class '{}' need {:.6g} s where others need {:.6g} s, and steps end "
                       "together; give equal durations",
-                      count_steps(std::span(channel.program).first(step + 1)), channel.name, duration, plan.duration)};
+                      count_steps(std::span(channel.program).first(leg + 1)), channel.name, duration, plan.duration)};
     }
     plan.duration = std::max(plan.duration, duration);
+    has_duration = true;
   }
   return plan;
 }

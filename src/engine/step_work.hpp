@@ -1,4 +1,4 @@
-/// The work that one step of a program may take.
+/// The work that one leg of a program may take.
 #pragma once
 
 #include <set>
@@ -9,8 +9,8 @@
 
 namespace monograin {
 
-/// Counts the work in a step of the program, and gives a step up that goes on without end. Steps and events are idle as
-/// long as the step coordinate does not move.
+/// Counts the work in a leg of the program, and gives a leg up that goes on without end. Internal steps and events are
+/// idle as long as the step coordinate does not move.
 class StepWork {
  public:
   StepWork(const Integrator& integrator, const GuardSet& guard_set) : integrator_(integrator), guard_set_(guard_set) {}
@@ -29,7 +29,7 @@ class StepWork {
  private:
   const Integrator& integrator_;
   const GuardSet& guard_set_;
-  long first_evaluation_ = 0;  ///< evaluations of the equations before the step
+  long first_evaluation_ = 0;  ///< evaluations of the equations before the leg
   long steps_ = 0;             ///< internal ones
   int idle_steps_ = 0;
   int events_ = 0;

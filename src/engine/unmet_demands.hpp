@@ -22,19 +22,20 @@ class UnmetDemands {
         openings_(scene.channels.size()),
         unborne_(scene.channels.size()) {}
 
-  void begin_step(double xi);
+  /// The run begins to cover a leg at xi: contacts that are open there count as open from there on.
+  void begin_openings(double xi);
   /// Records since when in this leg each channel's contact has been open.
   void note_open(double xi);
 
   /// A leg begins. If it is the first one of its step, keeps the values of the conditions' quantities there, and notes
   /// tables and sines that do not begin where their walls are.
-  void note_begin(const StepPlan& plan, const StepClock& clock);
+  void begin_leg(const StepPlan& plan, const StepClock& clock);
   /// A condition holds where the step begins, and ends it there.
-  void note_held_at_begin(const Condition& condition, const StepClock& clock);
+  void note_met_at_begin(const Condition& condition, const StepClock& clock);
   /// A step has ended by none of its conditions.
-  void note_conditions(const StepPlan& plan, const StepClock& clock, double xi, std::span<const double> y);
-  /// A leg has ended. Notes the forces that no contact bears then, because it opened before.
-  void note_forces(const StepPlan& plan, const StepClock& clock, double xi);
+  void note_unmet_conditions(const StepPlan& plan, const StepClock& clock, double xi, std::span<const double> y);
+  /// A leg has ended. Notes the prescribed forces of contacts that are open there.
+  void note_unborne_forces(const StepPlan& plan, const StepClock& clock, double xi);
 
   [[nodiscard]] std::vector<std::string> texts();
 

@@ -47,7 +47,7 @@ void Recorder::observe(double time, int step, double xi, std::span<const double>
   system_.observe(xi, y, std::span(row_).subspan(k_leading, system_.observables().size()));
 }
 
-void Recorder::differentiate(std::span<const double> derivatives) {
+void Recorder::take_derivatives(std::span<const double> derivatives) {
   std::ranges::copy(derivatives, row_.end() - static_cast<std::ptrdiff_t>(derivatives_.size()));
 }
 

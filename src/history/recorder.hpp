@@ -17,13 +17,13 @@ namespace monograin {
 class Recorder final : public HistorySink {
  public:
   /// @param system  system whose observables are recorded; must outlive the recorder
-  /// @param derivatives  columns after those of the observables, filled by differentiate()
+  /// @param derivatives  columns after those of the observables, filled by take_derivatives()
   explicit Recorder(HybridSystem& system, const std::vector<Column>& derivatives = {});
 
   void reserve_rows(std::size_t count) { history_.reserve_rows(count); }
 
   void observe(double time, int step, double xi, std::span<const double> y) override;
-  void differentiate(std::span<const double> derivatives) override;
+  void take_derivatives(std::span<const double> derivatives) override;
   void append(RowSide side) override;
   void event(const Event& event) override;
 

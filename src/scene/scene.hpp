@@ -27,7 +27,7 @@ struct Wall {
 struct Channel {
   std::string name;           ///< for messages; that of the contact class
   Ramp at_rest;               ///< control and value before the first step
-  std::vector<Step> program;  ///< empty: nothing changes
+  std::vector<Step> program;  ///< its legs; empty: nothing changes
 };
 
 /// Contact classes and channels of a scenario, and the system of its model.
@@ -38,11 +38,12 @@ struct Scene {
   std::vector<std::string> skipped;             ///< computations that are left out because the scene does not need them
   std::unique_ptr<HybridSystem> system;
 
-  /// Program with the most steps.
+  /// Program with the most legs.
   [[nodiscard]] std::span<const Step> longest_program() const noexcept;
-  /// Number of ramps, one or several for each step.
-  [[nodiscard]] std::size_t step_count() const noexcept { return longest_program().size(); }
-  /// Channel of a contact class, or of the class that has a wall.
+  /// Number of legs of the program: one or several for each step.
+  [[nodiscard]] std::size_t leg_count() const noexcept { return longest_program().size(); }
+  /// Channel of a contact class, of the class that has a wall, or of the first class whose wall's name begins so:
+  /// without merging, a preset class such as "axial" is several. walls.size() if there is none.
   [[nodiscard]] std::size_t channel_of(std::string_view wall) const;
 };
 
@@ -55,7 +56,7 @@ struct Scene {
 [[nodiscard]] std::vector<std::size_t> symmetry_classes(const std::vector<Wall>& walls);
 
 /// Makes the scene of a scenario and binds its model to it.
-/// @param merges_walls  false: every wall is a class of its own (to test the merging)
+/// @param merges_walls  false: every wall is a class of its own, to check and to time the merging
 /// @throws std::invalid_argument if the model has no law for the material
 [[nodiscard]] Scene make_scene(const CheckedScenario& scenario, bool merges_walls = true);
 

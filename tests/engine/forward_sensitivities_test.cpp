@@ -76,7 +76,7 @@ class Rows final : public HistorySink {
   std::vector<Row> rows;
 
   void observe(double time, int, double, std::span<const double> y) override { seen_ = {time, {}, y[0], {}}; }
-  void differentiate(std::span<const double> derivatives) override {
+  void take_derivatives(std::span<const double> derivatives) override {
     seen_.derivatives.assign(derivatives.begin(), derivatives.end());
   }
   void append(RowSide side) override {

@@ -60,17 +60,17 @@ TEST_F(WatchTest, MeetsATargetFromTheSideWhereTheStepBegan) {
 
 TEST_F(WatchTest, HoldsATargetTheStepBeganOn) {
   begin({{Quantity::force, 0, 5.0}, {Quantity::displacement, 0, 2.0}}, 2.0);
-  EXPECT_EQ(watch_.held_at_begin(), 1u);
+  EXPECT_EQ(watch_.met_at_begin(), 1u);
   begin({{Quantity::displacement, 0, 0.0}}, 0.0);
-  EXPECT_EQ(watch_.held_at_begin(), 0u);
+  EXPECT_EQ(watch_.met_at_begin(), 0u);
   // Within a billionth of the larger magnitude, and no farther.
   begin({{Quantity::displacement, 0, 2.0}}, 2.0 * (1.0 + 0.9e-9));
-  EXPECT_EQ(watch_.held_at_begin(), 0u);
+  EXPECT_EQ(watch_.met_at_begin(), 0u);
   begin({{Quantity::displacement, 0, 2.0}}, 2.0 * (1.0 + 1.1e-9));
-  EXPECT_FALSE(watch_.held_at_begin());
+  EXPECT_FALSE(watch_.met_at_begin());
   EXPECT_EQ(watch_.directions()[2], -1);
   begin({{Quantity::displacement, 0, 0.0}}, 1e-300);
-  EXPECT_FALSE(watch_.held_at_begin());
+  EXPECT_FALSE(watch_.met_at_begin());
 }
 
 TEST_F(WatchTest, IsMetWithinATargetsTolerance) {
@@ -86,14 +86,14 @@ TEST_F(WatchTest, HoldsATargetByWhichTheLastStepHasEnded) {
   begin(conditions, 1.0);
   watch_.note_met(fired, 0.5, std::vector<double>{2.1});
   begin(conditions, 2.1);
-  EXPECT_EQ(watch_.held_at_begin(), 0u);
+  EXPECT_EQ(watch_.met_at_begin(), 0u);
   // The memory does not apply to another target, or to the step after next.
   begin(conditions, 1.0);
   watch_.note_met(fired, 0.5, std::vector<double>{2.1});
   begin({{Quantity::displacement, 0, 2.05}}, 2.1);
-  EXPECT_FALSE(watch_.held_at_begin());
+  EXPECT_FALSE(watch_.met_at_begin());
   begin(conditions, 2.1);
-  EXPECT_FALSE(watch_.held_at_begin());
+  EXPECT_FALSE(watch_.met_at_begin());
 }
 
 TEST_F(WatchTest, DoesNotHoldATargetThatAJumpHasPassed) {
@@ -101,7 +101,7 @@ TEST_F(WatchTest, DoesNotHoldATargetThatAJumpHasPassed) {
   EXPECT_TRUE(is_met_at(0.0));
   watch_.note_met({}, 0.5, std::vector<double>{0.0});
   begin({{Quantity::force, 0, -3.0}}, 0.0);
-  EXPECT_FALSE(watch_.held_at_begin());
+  EXPECT_FALSE(watch_.met_at_begin());
 }
 
 TEST_F(WatchTest, HasNoRootFunctionForWhatVanishesWithTheContact) {

@@ -36,7 +36,7 @@ class OutputRowsTest : public ::testing::Test {
   Texts written() { return std::exchange(sink_.rows, {}); }
 
   Output output_{.points = 4, .times = {}};
-  StepClock clock_{.step = 1, .start = 10.0, .duration = 2.0, .number = 2};
+  StepClock clock_{.leg = 1, .start = 10.0, .duration = 2.0, .step_number = 2};
   FakeIntegrator integrator_;
   TextSink sink_;
   OutputRows rows_{output_, clock_, integrator_, sink_, nullptr, 1};
@@ -73,7 +73,7 @@ TEST_F(OutputRowsTest, EndWhereAStepEndsThatCouldHaveEndedElsewhere) {
   rows_.place({}, 0.8, true);
   rows_.write_before(0.0, 0.8001);
   EXPECT_EQ(written(), (Texts{"0 2 10.4 0.2", "0 2 10.8 0.4", "0 2 11.2 0.6"}));
-  rows_.end_step(0.8001);
+  rows_.end_leg(0.8001);
   rows_.open_instant(0.8001, std::vector{0.8001});
   EXPECT_EQ(written(), (Texts{"-1 2 11.6 0.8001", "0 2 11.6 0.8001"}));
 }
@@ -85,15 +85,15 @@ TEST_F(OutputRowsTest, AreNotWrittenInAPause) {
   EXPECT_EQ(written(), Texts{});
 }
 
-TEST_F(OutputRowsTest, KeptBackComeAgainOrAreWrittenLater) {
+TEST_F(OutputRowsTest, InTheBufferComeAgainOrAreWrittenLater) {
   rows_.place({}, 1.0, false);
-  rows_.hold();
+  rows_.buffer();
   rows_.write_before(0.0, 0.6);
   EXPECT_EQ(written(), Texts{});
-  rows_.drop_held();
-  rows_.hold();
+  rows_.drop_buffer();
+  rows_.buffer();
   rows_.write_before(0.0, 0.6);
-  rows_.release_held();
+  rows_.flush_buffer();
   EXPECT_EQ(written(), (Texts{"0 2 10.5 0.25", "0 2 11 0.5"}));
 }
 

@@ -82,11 +82,11 @@ TEST(Scene, GivesEveryWallAClassOfItsOwnWhenAsked) {
 }
 
 TEST(Scene, CountsItsStepsByTheLongestProgram) {
-  EXPECT_EQ(make_scene(preset(Configuration::die)).step_count(), 2u);
+  EXPECT_EQ(make_scene(preset(Configuration::die)).leg_count(), 2u);
   const CheckedScenario scenario =
       between(hertz_scenario(Configuration::walls, {}),
               {wall("a", {0, 0, 1}, path({0.1})), wall("b", {1, 0, 0}, path({0.1, 0.2, 0.3}))});
-  EXPECT_EQ(make_scene(scenario).step_count(), 3u);
+  EXPECT_EQ(make_scene(scenario).leg_count(), 3u);
 }
 
 TEST(Scene, LetsWallsWithoutStepsFollowTheLoading) {

@@ -206,7 +206,7 @@ void check_program(const Run& run, Violations& found) {
   if (run.record.status != RunStatus::complete) return;
   const Table& table = run.record.history;
   const Scene scene = make_scene(run.scenario);
-  const auto has_last_step = [&](const Channel& channel) { return channel.program.size() == scene.step_count(); };
+  const auto has_last_step = [&](const Channel& channel) { return channel.program.size() == scene.leg_count(); };
   const auto may_end_early = [&](const Channel& channel) {
     return has_last_step(channel) &&
            (!channel.program.back().until.empty() || channel.program.back().kind == Step::Kind::detach);
