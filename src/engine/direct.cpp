@@ -15,8 +15,8 @@
 namespace monograin {
 namespace {
 
-// A remainder of the step up to this share of a piece is merged into the piece.
-constexpr double k_rest = 0.25;
+// A remainder of the leg up to this share of a piece is merged into the piece.
+constexpr double k_mergeable = 0.25;
 // Pieces up to this length (step coordinates) may be round-off.
 constexpr double k_tiny = 1e-10;
 // Largest and smallest ratio of a piece's length to the length before, and the safety factor on the predicted length.
@@ -48,7 +48,7 @@ class Direct final : public EventLocator {
     begin_rates_.resize(unknowns.size());
     integrated_ = static_cast<std::size_t>(std::ranges::count_if(
         unknowns, [](const Unknown& unknown) { return unknown.kind != Unknown::Kind::algebraic; }));
-    gains_.resize(unknowns.size());
+    changes_.resize(unknowns.size());
     slopes_.resize(integrated_);
     series_.resize(unknowns.size());
   }
@@ -77,25 +77,25 @@ class Direct final : public EventLocator {
     system_.branch_reach(begin_state_, branch_reach_);
     has_branches_ = std::ranges::any_of(branch_reach_, [](double reach) { return std::isfinite(reach); });
     if (!is_closed_) system_.rates(begin_, begin_state_, begin_rates_);
-    double rest = k_rest;
-    for (bool is_covered = false; !is_covered; rest = 0.0) {
-      piece_end_ = 1.0 - begin_ <= (1.0 + rest) * length_ ? 1.0 : begin_ + length_;
-      const double planned = length_;
-      double tried = piece_length();
-      double factor = k_most_growth;
+    Attempt attempt{.is_covered = false};
+    for (double mergeable = k_mergeable; !attempt.is_covered; mergeable = 0.0) {
+      piece_end_ = 1.0 - begin_ <= (1.0 + mergeable) * length_ ? 1.0 : begin_ + length_;
+      const double planned_length = length_;
+      double tried_length = piece_length();
       bool ends_at_kink = false;
       try {
-        ends_at_kink = end_at_kink(rest);
-        tried = piece_length();
-        is_covered = cover_piece(factor);
+        ends_at_kink = end_at_kink(mergeable);
+        tried_length = piece_length();
+        attempt = cover_piece();
       } catch (const std::domain_error&) {
         // The equations end within the piece, or Newton's method left their domain although there is a solution.
-        if (tried < least_progress(begin_) || (tried < k_tiny && ++refusals_ > k_most_refusals)) throw;
-        factor = 0.5;
+        const bool is_tiny = tried_length < k_tiny;
+        if (tried_length < least_progress(begin_) || (is_tiny && ++refusals_ > k_most_refusals)) throw;
+        attempt = too_long(0.5);
       }
-      length_ = factor * tried;
+      length_ = attempt.factor * tried_length;
       // The length grows beyond the distances of kinks, to find out whether they are weak.
-      if (is_covered && ends_at_kink) length_ = std::max(length_, k_growth_at_kinks * planned);
+      if (attempt.is_covered && ends_at_kink) length_ = std::max(length_, k_growth_at_kinks * planned_length);
       length_ = std::min(longest(), length_);
     }
     statistics_.last_step = end_ - begin_;
@@ -109,14 +109,21 @@ class Direct final : public EventLocator {
       return;
     }
     state_at(xi, y);
-    if (quadrature_) y[*quadrature_] = has_panels_ ? panel_work_at(xi, y) : quadrature_at(xi, y);
+    if (quadrature_) y[*quadrature_] = has_panels_ ? panel_work_at(xi, y) : work_at(xi, y);
   }
 
   [[nodiscard]] double guard_tolerance() const noexcept override { return k_zero_guard; }
 
  private:
-  /// A part of a piece in which one series gives the work of the rows. work_ is that series; with a closed form it has
-  /// no other use.
+  /// Result of an attempt to cover a piece.
+  struct Attempt {
+    bool is_covered = true;         ///< false: the piece is too long
+    double factor = k_most_growth;  ///< length of the next piece, or of the next attempt, over that of this one
+  };
+  [[nodiscard]] static Attempt too_long(double factor) noexcept { return {.is_covered = false, .factor = factor}; }
+
+  /// A part of a piece in which one series gives the work of the rows. work_rate_ is that series; with a closed form it
+  /// has no other use.
   struct Panel {
     double begin = 0.0, end = 0.0;
     double work = 0.0;         ///< where the panel begins
@@ -151,10 +158,10 @@ class Direct final : public EventLocator {
   void state_at(double xi, std::span<double> y) override {
     ++statistics_.rhs_evaluations;
     const double t = position(xi);
-    if (goes_from_nodes() && !has_dependent_unknowns_) {
-      std::size_t gone = 0;
-      while (gone < nodes_->count && nodes_->places[gone] <= t) ++gone;
-      for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + (gone > 0 ? gains_[k][gone - 1] : 0.0);
+    if (starts_from_nodes() && !has_dependent_unknowns_) {
+      std::size_t passed = 0;
+      while (passed < nodes_->count && nodes_->places[passed] <= t) ++passed;
+      for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + (passed > 0 ? changes_[k][passed - 1] : 0.0);
       try {
         system_.solve(xi, y);
         return;
@@ -166,7 +173,7 @@ class Direct final : public EventLocator {
     system_.solve(xi, y);
   }
 
-  [[nodiscard]] bool goes_from_nodes() const noexcept { return may_be_undetermined_ && is_closed_; }
+  [[nodiscard]] bool starts_from_nodes() const noexcept { return may_be_undetermined_ && is_closed_; }
 
   void state_ahead(double xi, std::span<double> y) override { system_.solve(xi, y); }
 
@@ -180,14 +187,14 @@ class Direct final : public EventLocator {
     guess_ahead(j);
     ++statistics_.rhs_evaluations;
     system_.solve(node(j), trial_);
-    for (std::size_t k = 0; k < trial_.size(); ++k) gains_[k][j] = trial_[k] - begin_state_[k];
+    for (std::size_t k = 0; k < trial_.size(); ++k) changes_[k][j] = trial_[k] - begin_state_[k];
   }
 
-  /// Ends the piece at the first kink in it, or up to a share `rest` beyond it: the series of the work then see smooth
-  /// rates. Kinks that lie close together for the length of the piece are taken to be weak. If they are not, pieces are
-  /// refused until they are as short as the distances between the kinks.
+  /// Ends the piece at the first kink in it, or up to a share `mergeable` beyond it: the series of the work then see
+  /// smooth rates. Kinks that lie close together for the length of the piece are taken to be weak. If they are not,
+  /// pieces are refused until they are as short as the distances between the kinks.
   /// @return true if the piece ends at a kink
-  bool end_at_kink(double rest) {
+  bool end_at_kink(double mergeable) {
     // The last piece ended at kinks that are nearer than this share of the piece to its beginning.
     constexpr double k_passed = 1e-3;
     constexpr double k_close = 0.25;  // share of the piece up to which kinks lie close together
@@ -197,7 +204,7 @@ class Direct final : public EventLocator {
     constexpr int k_most_corrections = 4;
     // With few nodes, the tolerance of the work is above the errors that kinks cause.
     if (is_closed_ || nodes_ == &LegendreNodes::few()) return false;
-    const double limit = std::min(1.0, begin_ + (1.0 + rest) * piece_length());
+    const double limit = std::min(1.0, begin_ + (1.0 + mergeable) * piece_length());
     double kink = system_.next_kink(begin_ + k_passed * piece_length(), begin_, begin_state_);
     if (kink - begin_ < k_close * piece_length() || kink >= limit) return false;
     double correction = 1.0;
@@ -215,71 +222,74 @@ class Direct final : public EventLocator {
   }
 
   /// Solves for the state at the nodes of the piece, locates its event and integrates the work over it.
-  /// @param factor  receives the ratio of the next piece's length, or of this one's at the next try, to the present
-  ///   length; unchanged if nothing limits it
-  /// @return false if the piece is too long
-  bool cover_piece(double& factor) {
-    // The quadrature does not refine pieces shorter than this (step coordinates): their error is below the round-off of
-    // the whole work.
-    constexpr double k_smallest_quadrature = 1e-6;
-    // An event before this share of the piece has nodes beyond it. A piece that is covered again ends at k_just_beyond
-    // times the event's distance from its beginning.
+  Attempt cover_piece() {
+    // An event before this share of the piece has nodes beyond it.
     constexpr double k_inside = 0.99;
-    constexpr double k_just_beyond = 1.001;
     forget_samples();
     if (begin_ == segment_begin_) sample_early();
+    if (const auto factor = solve_nodes()) return too_long(*factor);
+    fit_changes();
+    Attempt attempt = is_closed_ ? Attempt{} : judge_series();
+    if (!attempt.is_covered) return attempt;
+    move_end(piece_end_);
+    locate_event();
+    if (has_jumped()) return too_long(k_most_shrinkage);
+    if (starts_from_nodes() && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
+    if (has_branches_) {
+      if (!is_resolved()) return too_long(std::min(0.5, factor_just_beyond_event()));
+      attempt.factor = std::min(attempt.factor, std::max(k_safety / share_of_reach(end_state_), k_most_shrinkage));
+    }
+    const bool has_nodes_beyond = end_ - begin_ < k_inside * piece_length();
+    if (!is_closed_ && has_nodes_beyond && !holds_up_to_end()) return too_long(factor_just_beyond_event());
+    if (quadrature_) end_state_[*quadrature_] = work_at(end_, end_state_);
+    return attempt;
+  }
+
+  /// Solves for the states at the nodes, and evaluates the rates there if the work needs them.
+  /// @return factor of the piece's length if a state is so far from the beginning that it may lie on another branch of
+  ///   solutions; none if all nodes are solved
+  std::optional<double> solve_nodes() {
     for (std::size_t j = 0; j < nodes_->count; ++j) {
       const double xi = node(j);
       solve_at_node(j);
       if (piece_length() > k_shortest_sampled && !guard_set_.is_monotone()) sample_inside(xi, trial_);
       if (has_branches_ && piece_length() > least_progress(begin_)) {
         if (const double share = share_of_reach(trial_); share > 1.0) {
-          factor = std::clamp(k_safety / share, k_most_shrinkage, 0.5);
-          return false;
+          return std::clamp(k_safety / share, k_most_shrinkage, 0.5);
         }
       }
       if (is_closed_) continue;
       system_.rates(xi, trial_, rates_);
       for (std::size_t k = 0; k < integrated_; ++k) slopes_[k][j] = rates_[k];
     }
-    fit_gains();
-    if (!is_closed_) {
-      work_.fit(*nodes_, slopes_[*quadrature_]);
-      const double length = piece_length();
-      const double reach = work_reach(begin_state_[*quadrature_], length, work_accuracy_, round_off_.known());
-      factor = std::clamp(k_safety * reach, k_most_shrinkage, k_most_growth);
-      const bool is_too_long = reach < 1.0 && length > k_smallest_quadrature;
-      round_off_.see(work_, begin_, length, is_too_long);
-      if (is_too_long) return false;
-    }
-    move_end(piece_end_);
-    locate_event();
-    if (has_jumped()) {
-      factor = k_most_shrinkage;
-      return false;
-    }
-    if (goes_from_nodes() && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
-    if (has_branches_) {
-      if (!is_resolved()) {
-        factor = std::min(0.5, k_just_beyond * (end_ - begin_) / piece_length());
-        return false;
-      }
-      factor = std::min(factor, std::max(k_safety / share_of_reach(end_state_), k_most_shrinkage));
-    }
-    if (!is_closed_ && end_ - begin_ < k_inside * piece_length() && !holds_up_to_end()) {
-      factor = k_just_beyond * (end_ - begin_) / piece_length();
-      return false;
-    }
-    if (quadrature_) end_state_[*quadrature_] = quadrature_at(end_, end_state_);
-    return true;
+    return std::nullopt;
   }
 
-  /// How many times as long the interval of work_, the series of the work's rate, could be.
+  /// Fits the series of the work's rate, and judges whether its last terms are below the tolerance.
+  Attempt judge_series() {
+    // The quadrature does not refine pieces shorter than this (step coordinates): their error is below the round-off of
+    // the whole work.
+    constexpr double k_smallest_quadrature = 1e-6;
+    work_rate_.fit(*nodes_, slopes_[*quadrature_]);
+    const double length = piece_length();
+    const double ratio = length_ratio(begin_state_[*quadrature_], length, work_accuracy_, round_off_.known());
+    const bool is_refused = ratio < 1.0 && length > k_smallest_quadrature;
+    round_off_.report(work_rate_, begin_, length, is_refused);
+    return {.is_covered = !is_refused, .factor = std::clamp(k_safety * ratio, k_most_shrinkage, k_most_growth)};
+  }
+
+  /// Factor of the piece's length with which it ends just beyond its event.
+  [[nodiscard]] double factor_just_beyond_event() const noexcept {
+    constexpr double k_just_beyond = 1.001;
+    return k_just_beyond * (end_ - begin_) / piece_length();
+  }
+
+  /// How many times as long the interval of work_rate_, the series of the work's rate, could be.
   /// @param work      work where the interval begins
   /// @param length    of the interval, in step coordinates
   /// @param accuracy  tolerated error, over the work
   /// @param round_off  known round-off of the rates
-  [[nodiscard]] double work_reach(double work, double length, double accuracy, double round_off = 0.0) const {
+  [[nodiscard]] double length_ratio(double work, double length, double accuracy, double round_off = 0.0) const {
     // Last terms of a series of rates up to this many times the round-off of the work count as round-off: the rates are
     // then next to nothing beside the work.
     constexpr double k_noise_of_nothing = 1e4;
@@ -287,7 +297,7 @@ class Direct final : public EventLocator {
     // The tolerance itself must not count as round-off: terms next to a kink fall slowly, and the sum of those left out
     // exceeds the last ones kept.
     const double least = k_noise_of_nothing * k_round_off_of_work * scale / length;
-    return work_.reach(2.0 * accuracy * scale / length, std::max(round_off, least));
+    return work_rate_.reach(2.0 * accuracy * scale / length, std::max(round_off, least));
   }
 
   /// True if the states of the piece lie on another branch than its beginning: an event there comes with a jump of the
@@ -344,7 +354,7 @@ class Direct final : public EventLocator {
   void forget_what_follows() {
     piece_end_ = end_;
     for (std::size_t j = 0; j < nodes_->count; ++j) solve_at_node(j);
-    fit_gains();
+    fit_changes();
     move_end(end_);
   }
 
@@ -352,9 +362,9 @@ class Direct final : public EventLocator {
     return begin_ + 0.5 * piece_length() * (1.0 + nodes_->places[j]);
   }
 
-  void fit_gains() {
+  void fit_changes() {
     for (std::size_t k = 0; k < series_.size(); ++k) {
-      if (k != quadrature_) series_[k].fit(*nodes_, gains_[k]);
+      if (k != quadrature_) series_[k].fit(*nodes_, changes_[k]);
     }
   }
 
@@ -391,18 +401,19 @@ class Direct final : public EventLocator {
     const LegendreNodes::Ahead& ahead = nodes_->ahead[j];
     const double half = 0.5 * piece_length();
     for (std::size_t k = 0; k < trial_.size(); ++k) {
-      const auto gone = [&](std::size_t i) { return j > i ? gains_[k][j - 1 - i] : 0.0; };
-      double gain = 0.0;
+      // The i-th node before j, or the beginning of the piece.
+      const auto change_before = [&](std::size_t i) { return j > i ? changes_[k][j - 1 - i] : 0.0; };
+      double change = 0.0;
       if (!is_closed_ && k < integrated_) {
         for (std::size_t i = 0; i < std::min(j + 1, LegendreNodes::k_known); ++i) {
-          gain +=
-              ahead.values[i] * gone(i) + half * ahead.slopes[i] * (j > i ? slopes_[k][j - 1 - i] : begin_rates_[k]);
+          const double slope = j > i ? slopes_[k][j - 1 - i] : begin_rates_[k];
+          change += ahead.values[i] * change_before(i) + half * ahead.slopes[i] * slope;
         }
       } else if (j > 0) {
-        gain = gone(0);
-        if (system_.unknowns()[k].is_dependent) gain += ahead.onward * (gone(0) - gone(1));
+        change = change_before(0);
+        if (system_.unknowns()[k].is_dependent) change += ahead.onward * (change_before(0) - change_before(1));
       }
-      trial_[k] = begin_state_[k] + gain;
+      trial_[k] = begin_state_[k] + change;
     }
   }
 
@@ -413,15 +424,15 @@ class Direct final : public EventLocator {
     system_.rates(end_, end_state_, rates_);
     const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
     const auto is_same = [&](double xi, std::span<const double> rates) {
-      const double error = std::abs(work_.value(position(xi)) - rates[*quadrature_]);
+      const double error = std::abs(work_rate_.value(position(xi)) - rates[*quadrature_]);
       return (end_ - begin_) * error <= std::max(k_event_accuracy, work_accuracy_) * scale;
     };
     return is_same(begin_, begin_rates_) && is_same(end_, rates_);
   }
 
-  [[nodiscard]] double quadrature_at(double xi, std::span<const double> y) {
+  [[nodiscard]] double work_at(double xi, std::span<const double> y) {
     if (is_closed_) return primitive_offset_ + *system_.closed_quadrature(xi, y);
-    return begin_state_[*quadrature_] + 0.5 * piece_length() * work_.integral(position(xi));
+    return begin_state_[*quadrature_] + 0.5 * piece_length() * work_rate_.integral(position(xi));
   }
 
   void begin_panels() {
@@ -433,8 +444,8 @@ class Direct final : public EventLocator {
   /// @param y  complete state at xi but for the work
   double panel_work_at(double xi, std::span<const double> y) {
     while (xi > panel_.end) take_next_panel();
-    if (!panel_.is_resolved || xi < panel_.begin) return quadrature_at(xi, y);
-    return panel_.work + panel_.integral(work_, panel_.position(xi));
+    if (!panel_.is_resolved || xi < panel_.begin) return work_at(xi, y);
+    return panel_.work + panel_.integral(work_rate_, panel_.position(xi));
   }
 
   /// Fits the series of the work over the next panel. No event lies inside a piece, so the mode holds at all nodes.
@@ -445,15 +456,15 @@ class Direct final : public EventLocator {
     constexpr double k_panel_accuracy = 1e-15;
     const LegendreNodes& nodes = LegendreNodes::many();
     if (panel_.is_resolved) {
-      panel_.work += panel_.integral(work_, 1.0);
+      panel_.work += panel_.integral(work_rate_, 1.0);
     } else if (panel_.end > begin_) {
       state_at(panel_.end, trial_);
-      panel_.work = quadrature_at(panel_.end, trial_);
+      panel_.work = work_at(panel_.end, trial_);
     }
     panel_.begin = panel_.end;
     for (double factor = 0.0; factor < 1.0;) {
       panel_.end =
-          end_ - panel_.begin <= (1.0 + k_rest) * panel_.next_length ? end_ : panel_.begin + panel_.next_length;
+          end_ - panel_.begin <= (1.0 + k_mergeable) * panel_.next_length ? end_ : panel_.begin + panel_.next_length;
       const double length = panel_.length();
       for (std::size_t j = 0; j < nodes.count; ++j) {
         const double xi = panel_.begin + 0.5 * length * (1.0 + nodes.places[j]);
@@ -461,11 +472,11 @@ class Direct final : public EventLocator {
         system_.rates(xi, trial_, rates_);
         slopes_[*quadrature_][j] = rates_[*quadrature_];
       }
-      work_.fit(nodes, slopes_[*quadrature_]);
-      const double reach = work_reach(panel_.work, length, k_panel_accuracy);
-      panel_.is_resolved = reach >= 1.0;
+      work_rate_.fit(nodes, slopes_[*quadrature_]);
+      const double ratio = length_ratio(panel_.work, length, k_panel_accuracy);
+      panel_.is_resolved = ratio >= 1.0;
       const bool is_last = panel_.is_resolved || length <= k_shortest_panel;
-      factor = is_last ? k_most_growth : std::clamp(k_safety * reach, k_most_shrinkage, 0.5);
+      factor = is_last ? k_most_growth : std::clamp(k_safety * ratio, k_most_shrinkage, 0.5);
       panel_.next_length = factor * length;
     }
   }
@@ -480,15 +491,15 @@ class Direct final : public EventLocator {
   bool has_dependent_unknowns_ = false;
   bool may_be_undetermined_ = false;  ///< some unknown may be determined by no equation
   double segment_begin_ = 0.0;
-  int refusals_ = 0;                     ///< tiny pieces of this segment in which the equations ended
-  double length_ = 0.0;                  ///< length of the next piece
-  double piece_end_ = 0.0;               ///< where the piece would end without an event
-  LegendreSeries work_;                  ///< rate of the quadrature
-  RateRoundOff round_off_;               ///< round-off of the rates in this segment
-  std::size_t integrated_ = 0;           ///< number of unknowns with rates(): the first ones
-  std::vector<LegendreSamples> gains_;   ///< change of each unknown from the beginning of the piece to its nodes
-  std::vector<LegendreSamples> slopes_;  ///< rates of the integrated unknowns at the nodes
-  std::vector<LegendreSeries> series_;   ///< series of the gains
+  int refusals_ = 0;                      ///< tiny pieces of this segment in which the equations ended
+  double length_ = 0.0;                   ///< length of the next piece
+  double piece_end_ = 0.0;                ///< where the piece would end without an event
+  LegendreSeries work_rate_;              ///< rate of the quadrature
+  RateRoundOff round_off_;                ///< round-off of the rates in this segment
+  std::size_t integrated_ = 0;            ///< number of unknowns with rates(): the first ones
+  std::vector<LegendreSamples> changes_;  ///< change of each unknown from the beginning of the piece to its nodes
+  std::vector<LegendreSamples> slopes_;   ///< rates of the integrated unknowns at the nodes
+  std::vector<LegendreSeries> series_;    ///< series of the changes
   std::vector<double> trial_, rates_, begin_rates_;
   bool has_branches_ = false;             ///< the equations have several branches of solutions
   std::vector<double> branch_reach_;      ///< Equations::branch_reach() where the piece begins

@@ -2,51 +2,66 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "numerics/legendre_series.hpp"
 
 namespace monograin {
 
-/// Estimates the round-off of the rates from the series of pieces. A shorter piece from the beginning of a refused one
-/// shows round-off if its last terms are as large as those of the refused piece. The last terms next to a square root
-/// fall as the length to the power 1/2, those next to a kink as the length. A kink just inside the refused piece can
-/// imitate round-off, but not with similar terms several times. Once round-off is known, pieces may show it: pieces
-/// short enough to avoid it would let it add up in their states.
+/// Learns the round-off of the rates from pieces whose series end in terms above the tolerance, and which are refused
+/// therefore. A later piece from the same beginning, at most half as long, shows round-off if its last terms have not
+/// become smaller: halving a piece multiplies them by 0.7 next to a square root (length to the power 1/2), and by 0.5
+/// next to a kink. A kink just inside the refused piece can imitate round-off, but not several times with similar
+/// terms: round-off counts as known after three such observations. Once it is known, pieces may show it: pieces short
+/// enough to avoid it would let it add up in their states.
 class RateRoundOff {
  public:
+  /// Largest terms observed to be round-off; 0 if the round-off is not known.
   [[nodiscard]] double known() const noexcept { return known_; }
 
-  void see(const LegendreSeries& rate, double begin, double length, bool is_refused) noexcept {
+  /// Reports a piece. Pieces have to be reported in the order in which they are tried.
+  /// @param rate    series of the rates over the piece
+  /// @param begin   of the piece (step coordinate), >= 0
+  /// @param length  of the piece, > 0
+  void report(const LegendreSeries& rate, double begin, double length, bool is_refused) noexcept {
     const double tail = rate.tail();
-    if (begin != refused_at_) {
-      if (!is_refused) return;
-      refused_at_ = begin;
-      refused_length_ = length;
-      refused_tail_ = tail;
+    if (!refused_ || begin != refused_->begin) {
+      if (is_refused) refused_ = {begin, length, tail};
       return;
     }
-    if (tail < k_as_large * refused_tail_ || length > k_shorter * refused_length_) return;
-    if (refused_tail_ > k_most * rate.largest()) return;
-    if (std::max(largest_, refused_tail_) > k_alike * std::min(largest_, refused_tail_)) {
-      largest_ = 0.0;
-      count_ = 0;
-    }
-    largest_ = std::max(largest_, refused_tail_);
-    if (++count_ >= k_often) known_ = largest_;
-    refused_at_ = -1.0;
+    if (length > k_shorter * refused_->length || tail < k_as_large * refused_->tail) return;
+    if (refused_->tail > k_most * rate.largest()) return;
+    observe(refused_->tail);
+    refused_.reset();
   }
 
  private:
-  static constexpr double k_shorter = 0.5;
-  static constexpr double k_as_large = 0.75;
-  static constexpr double k_most = 1e-6;  // over the largest term of the rates
-  static constexpr double k_alike = 10.0;
-  static constexpr int k_often = 3;
+  static constexpr double k_shorter = 0.5;    // largest length of the later piece, over that of the refused one
+  static constexpr double k_as_large = 0.75;  // least ratio of the last terms: just above that of a square root
+  static constexpr double k_most = 1e-6;      // largest round-off, over the largest term of the rates
+  static constexpr double k_alike = 10.0;     // largest ratio of similar observations
+  static constexpr int k_often = 3;           // observations that make it known
 
-  double refused_at_ = -1.0;
-  double refused_length_ = 0.0, refused_tail_ = 0.0;
+  struct RefusedPiece {
+    double begin = 0.0;
+    double length = 0.0;
+    double tail = 0.0;  ///< last terms of its series
+  };
+
+  /// Counts an observation. One that differs from those before starts the count anew.
+  void observe(double tail) noexcept {
+    if (std::max(largest_, tail) > k_alike * std::min(largest_, tail)) {
+      largest_ = 0.0;
+      count_ = 0;
+    }
+    largest_ = std::max(largest_, tail);
+    if (++count_ >= k_often) known_ = largest_;
+  }
+
+  std::optional<RefusedPiece> refused_;  ///< the first one from the present beginning; empty after it has been used
   int count_ = 0;
-  double largest_ = 0.0, known_ = 0.0;
+  double largest_ = 0.0;  ///< of the observations that are counted
+  double known_ = 0.0;
 };
 
 }  // namespace monograin
