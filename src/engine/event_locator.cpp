@@ -91,10 +91,10 @@ void EventLocator::read_sides() {
 
 /// Stored values of the guards in the order of xi: index 0 is the beginning of the piece, then come the evaluations
 /// inside it; any larger index is the end.
-EventLocator::View EventLocator::sample(std::size_t place) const {
-  if (place == 0) return {begin_, begin_values_};
-  if (place > samples_.size()) return {end_, end_values_};
-  return {samples_[place - 1], std::span(sample_values_).subspan((place - 1) * guard_set_.size(), guard_set_.size())};
+EventLocator::View EventLocator::sample(std::size_t index) const {
+  if (index == 0) return {begin_, begin_values_};
+  if (index > samples_.size()) return {end_, end_values_};
+  return {samples_[index - 1], std::span(sample_values_).subspan((index - 1) * guard_set_.size(), guard_set_.size())};
 }
 
 bool EventLocator::any_crosses(const View& before, const View& after) const {
@@ -107,21 +107,21 @@ bool EventLocator::any_crosses(const View& before, const View& after) const {
 
 /// Position between an evaluation and the next at which a guard may have crossed zero and returned: the first extremum
 /// of a parabola through these two values and the one after, or the one before. Without any: the next evaluation.
-/// @param place  index of the first evaluation, as in sample()
-double EventLocator::hidden_extremum(std::size_t place) const {
-  const View a = sample(place);
-  const View b = sample(place + 1);
+/// @param interval  index of the first evaluation, as in sample()
+double EventLocator::hidden_extremum(std::size_t interval) const {
+  const View a = sample(interval);
+  const View b = sample(interval + 1);
   if (b.xi - a.xi < k_shortest_sampled || samples_.empty()) return b.xi;
   struct Third {
     View view;
-    double per_b = 0.0;  ///< 1 / (signed distance from b); per_a: from a
-    double per_a = 0.0;
+    double per_distance_from_b = 0.0;  ///< one over the signed distance
+    double per_distance_from_a = 0.0;
   };
   std::array<Third, 2> thirds;
   std::size_t count = 0;
   const auto add = [&](const View& view) { thirds[count++] = {view, 1.0 / (view.xi - b.xi), 1.0 / (view.xi - a.xi)}; };
-  if (place < samples_.size()) add(sample(place + 2));
-  if (place > 0) add(sample(place - 1));
+  if (interval < samples_.size()) add(sample(interval + 2));
+  if (interval > 0) add(sample(interval - 1));
 
   const auto directions = guard_set_.directions();
   const double per_length = 1.0 / (b.xi - a.xi);
@@ -133,13 +133,29 @@ double EventLocator::hidden_extremum(std::size_t place) const {
     if (at_a == 0.0 || (directions[g] != 0 && directions[g] != static_cast<int>(sign))) continue;
     const double slope = (at_b - at_a) * per_length;
     for (const Third& third : std::span(thirds).first(count)) {
-      const double curvature = ((third.view.values[g] - at_b) * third.per_b - slope) * third.per_a;
+      const double next_slope = (third.view.values[g] - at_b) * third.per_distance_from_b;
+      const double curvature = (next_slope - slope) * third.per_distance_from_a;
       if (!(sign * curvature < 0.0)) continue;
-      const double place_of_extremum = 0.5 * (a.xi + b.xi - slope / curvature);
-      if (place_of_extremum > a.xi && place_of_extremum < b.xi) extremum = std::min(extremum, place_of_extremum);
+      const double own = 0.5 * (a.xi + b.xi - slope / curvature);
+      if (own > a.xi && own < b.xi) extremum = std::min(extremum, own);
     }
   }
   return extremum;
+}
+
+/// End of an interval between two evaluations, or an extremum of guards in it, if a guard crosses zero up to there;
+/// none if none crosses.
+std::optional<EventLocator::View> EventLocator::crossed_in(std::size_t interval) {
+  const View before = sample(interval);
+  const View after = sample(interval + 1);
+  if (any_crosses(before, after)) return after;
+  const double extremum = hidden_extremum(interval);
+  if (extremum == after.xi) return std::nullopt;
+  state_at(extremum, guess_);
+  evaluate_guards(extremum, guess_, extremum_values_);
+  const View between{extremum, extremum_values_};
+  if (any_crosses(before, between)) return between;
+  return std::nullopt;
 }
 
 /// Moves the end of the piece to the first root in it, if there is one.
@@ -150,19 +166,15 @@ void EventLocator::locate_event() {
     std::size_t guard = 0;
   };
   std::optional<End> of_branch;
-  for (std::size_t place = 0; place <= samples_.size();) {
-    const View before = sample(place);
-    View after = sample(place + 1);
-    if (!any_crosses(before, after)) {
-      const double extremum = hidden_extremum(place);
-      ++place;
-      if (extremum == after.xi) continue;
-      state_at(extremum, guess_);
-      evaluate_guards(extremum, guess_, extremum_values_);
-      after = {extremum, extremum_values_};
-      if (!any_crosses(before, after)) continue;
-      --place;
+  // Intervals between two evaluations: interval i begins at sample(i).
+  for (std::size_t interval = 0; interval <= samples_.size();) {
+    const View before = sample(interval);
+    const auto crossed = crossed_in(interval);
+    if (!crossed) {
+      ++interval;
+      continue;
     }
+    const View after = *crossed;
     std::size_t first = 0;
     double root = 0.0;
     try {
@@ -171,19 +183,19 @@ void EventLocator::locate_event() {
       // No state need exist between two evaluations if the second state is not on the branch of the first.
       const double nearer = std::midpoint(before.xi, after.xi);
       if (nearer - begin_ < least_progress(begin_)) throw;
-      place = shorten(nearer, place);
+      interval = shorten(nearer, interval);
       continue;
     }
     const bool is_shorter = root < end_ - least_progress(begin_);
-    place = shorten(root, place);
-    const double last_sample = sample(place).xi;
+    interval = shorten(root, interval);
+    const double last_sample = sample(interval).xi;
     if (guard_set_.is_branch_end(first) && !of_branch) {
       of_branch = {root, first};
       sample_up_to(last_sample);
       continue;
     }
     // If another guard has an earlier root, the loop searches what is left of the piece again.
-    if (collect_fired(first, sample(place), is_shorter)) return;
+    if (collect_fired(first, sample(interval), is_shorter)) return;
     fired_.clear();
   }
   // The end of a branch counts as a root even if its guard is short of zero by round-off: every next piece would end
@@ -286,12 +298,14 @@ double EventLocator::polish(std::size_t guard, const View& before, const View& a
       function, before.xi, after.xi, before.values[guard], after.values[guard],
       [](double a, double b) { return b - a <= k_share_of_progress * least_progress(b); }, iterations);
   if (below < above) return above;
+  // The root may be short of zero by round-off: moves on, in growing steps, until it is not.
   double root = above;
-  const auto is_short = [&] { return value != 0.0 && (value > 0.0) == (before.values[guard] > 0.0); };
-  for (double ahead = k_round_off_of_root * root; is_short(); ahead *= 4.0) {
-    root += ahead;
+  double step = k_round_off_of_root * root;
+  while (value != 0.0 && (value > 0.0) == (before.values[guard] > 0.0)) {
+    root += step;
     if (root >= after.xi) return after.xi;
     function(root);
+    step *= 4.0;
   }
   return root;
 }

@@ -2,6 +2,7 @@
 /// any instant of a piece.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/integrator.hpp"
@@ -72,9 +73,10 @@ class EventLocator : public Integrator {
   virtual void move_end(double xi) = 0;
 
   void read_sides();
-  [[nodiscard]] View sample(std::size_t place) const;
+  [[nodiscard]] View sample(std::size_t index) const;
   [[nodiscard]] bool any_crosses(const View& before, const View& after) const;
-  [[nodiscard]] double hidden_extremum(std::size_t place) const;
+  [[nodiscard]] double hidden_extremum(std::size_t interval) const;
+  [[nodiscard]] std::optional<View> crossed_in(std::size_t interval);
   [[nodiscard]] double first_root(const View& before, const View& after, std::size_t& guard);
   [[nodiscard]] bool collect_fired(std::size_t first, const View& last, bool is_shorter);
   [[nodiscard]] std::size_t shorten(double xi, std::size_t samples);

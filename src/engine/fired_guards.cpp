@@ -50,6 +50,11 @@ bool are_marks(const GuardSet& guard_set, std::span<const std::size_t> guards) {
   });
 }
 
+// A guard fires together with those that the integrator has found if it is within its tolerance of zero at xi, and
+//   is not short of zero by more than it has moved since the middle of the integrator's last step: at its mean rate it
+//     reaches zero within as long again, and a branch may be shorter than the tolerance;
+//   was not zero at that middle, and moves in a direction in which it counts;
+//   is a condition of the program and short of zero: does not go away from zero before xi.
 std::vector<std::size_t> fired_guards(GuardSet& guard_set, Integrator& integrator, double last, double xi,
                                       std::span<const double> y) {
   std::vector<std::size_t> fired(integrator.fired().begin(), integrator.fired().end());
@@ -76,7 +81,6 @@ std::vector<std::size_t> fired_guards(GuardSet& guard_set, Integrator& integrato
     for (const std::size_t g : others) {
       const int side = before[g] < 0.0 ? 1 : -1;
       const bool counts = guard_set.directions()[g] == 0 || guard_set.directions()[g] == side;
-      // At its mean rate the guard reaches zero within as long again; a branch may be shorter than the tolerance.
       const double path = side * (now[g] - before[g]);
       const bool has_arrived = path > 0.0 && -side * now[g] <= std::min(tolerance_of(g), std::max(k_zero_guard, path));
       if (!counts || before[g] == 0.0 || !has_arrived) continue;

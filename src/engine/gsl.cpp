@@ -110,7 +110,7 @@ class GslStepper final : public Stepper {
         rates_(form.size()) {
     if (driver_->s->type == gsl_odeiv2_step_msbdf) {
       by_z_.resize(form.size() * form.size());
-      for (auto* values : {&by_xi_, &beside_, &tolerated_}) values->resize(form.size());
+      for (auto* values : {&by_xi_, &excess_, &tolerated_}) values->resize(form.size());
       permutation_.reset(gsl_permutation_alloc(form.size()));
       if (!permutation_) throw std::bad_alloc();
     }
@@ -196,25 +196,25 @@ class GslStepper final : public Stepper {
     const double length = end - begin_;
     bool is_doubtful = false;
     for (std::size_t k = 0; k < size; ++k) {
-      const double way = now_[k] - old_[k];
+      const double change = now_[k] - old_[k];
       const auto [least, most] = std::minmax({length * old_rates_[k], length * rates_[k]});
-      const double margin = 0.5 * (most - least);
-      beside_[k] = way - std::clamp(way, least - margin, most + margin);
+      const double slack = 0.5 * (most - least);
+      excess_[k] = change - std::clamp(change, least - slack, most + slack);
       gsl_odeiv2_control_errlevel(driver_->c, now_[k], rates_[k], length, k, &tolerated_[k]);
-      is_doubtful = is_doubtful || std::abs(beside_[k]) > k_doubtful * tolerated_[k];
+      is_doubtful = is_doubtful || std::abs(excess_[k]) > k_doubtful * tolerated_[k];
     }
     if (!is_doubtful) return false;
     if (jacobian(end, now_.data(), by_z_.data(), by_xi_.data(), this) != GSL_SUCCESS) return true;
     for (double& value : by_z_) value *= -length;
     for (std::size_t k = 0; k < size; ++k) by_z_[k * size + k] += 1.0;
     gsl_matrix_view matrix = gsl_matrix_view_array(by_z_.data(), size, size);
-    gsl_vector_view correction = gsl_vector_view_array(beside_.data(), size);
+    gsl_vector_view correction = gsl_vector_view_array(excess_.data(), size);
     int sign = 0;
     gsl_linalg_LU_decomp(&matrix.matrix, permutation_.get(), &sign);
     if (gsl_linalg_LU_sgndet(&matrix.matrix, sign) <= 0) return true;
     gsl_linalg_LU_svx(&matrix.matrix, permutation_.get(), &correction.vector);
     for (std::size_t k = 0; k < size; ++k) {
-      if (std::abs(beside_[k]) > k_wrong * tolerated_[k]) return true;
+      if (std::abs(excess_[k]) > k_wrong * tolerated_[k]) return true;
     }
     return false;
   }
@@ -262,7 +262,7 @@ class GslStepper final : public Stepper {
   std::vector<double> old_, now_, between_;
   std::vector<double> old_rates_, rates_;
   bool are_rates_known_ = false;  ///< at the beginning of the step
-  std::vector<double> by_z_, by_xi_, beside_, tolerated_;
+  std::vector<double> by_z_, by_xi_, excess_, tolerated_;
   Handle<gsl_permutation*, gsl_permutation_free> permutation_;
   double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
 };

@@ -23,7 +23,8 @@ struct Tolerances {
 };
 
 /// Finest rtol that an integrator is expected to keep: the round-off of a scene's own equations may exceed finer ones
-/// (docs/reference/limits.md).
+/// (docs/reference/limits.md). Two floors lie below it: a step's tolerances are no finer than of_step() makes them
+/// (rtol = 1e-13), and make_integrator() takes no rtol below 1e-14.
 inline constexpr double k_finest_rtol = 1e-11;
 
 /// Counts of one run, summed over its segments.
@@ -46,10 +47,10 @@ struct Statistics {
 /// Why an integration was given up.
 enum class Failure {
   no_step,         ///< no step, however short, meets the tolerances
-  too_much_work,   ///< more steps or evaluations than a step of the program may take
+  too_much_work,   ///< more steps or evaluations than a leg of the program may take
   no_progress,     ///< steps below the round-off of the step coordinate
   chattering,      ///< regimes that alternate at one instant
-  endless_events,  ///< more events than a step of the program may have
+  endless_events,  ///< more events than a leg of the program may have
   set_up           ///< a library did not start
 };
 

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/odeint_errors.hpp"
 #include "engine/stepper.hpp"
 #include "numerics/rosenbrock.hpp"
 #include "system/resolution.hpp"
@@ -30,14 +31,7 @@ constexpr int k_most_tries = 500;         // for one step
 // the same solution.
 constexpr double k_most_between_sequences = 100.0;
 constexpr double k_shorter = 0.25;  // factor on the length of a step that failed
-
-template <class State>
-State zeros(std::size_t size) {
-  if constexpr (std::is_same_v<State, std::vector<double>>)
-    return State(size, 0.0);
-  else
-    return State{};
-}
+constexpr double k_stretch = 1.1;   // most for the last step, so that no remainder of the size of round-off is left
 
 /// Takes one step that does not end beyond xi = 1; shortens it if its error is too large or the equations end in it.
 /// @param step        length to try first; receives the length of the next step
@@ -48,8 +42,7 @@ State zeros(std::size_t size) {
 template <class Try>
 double controlled_step(double xi, double& step, long& rejections, Try&& attempt) {
   for (int tries = 0; tries < k_most_tries; ++tries) {
-    // The last step is stretched by up to a tenth, so that no remainder of the size of round-off is left.
-    const bool is_last = xi + 1.1 * step >= 1.0;
+    const bool is_last = xi + k_stretch * step >= 1.0;
     double now = is_last ? 1.0 - xi : step;
     double end = xi;
     try {
@@ -69,120 +62,6 @@ double controlled_step(double xi, double& step, long& rejections, Try&& attempt)
   }
   throw SolverError(Failure::no_step, xi, step, {});
 }
-
-/// Tolerances of the unknowns in a step, no finer than the round-off of xi times the rates. If a contact lasts hardly
-/// longer than that round-off, the errors of a step's stages are of its size.
-template <class State>
-class Tolerated {
- public:
-  Tolerated(const ScaledForm& form, const Tolerances& tolerances)
-      : size_(form.size()), of_step_(of_step(tolerances)), rates_(zeros<State>(form.size())) {}
-
-  /// Takes the rates of a step's stages in turn; the last rates are those at the step's end.
-  void see(const State& rates) noexcept { rates_ = rates; }
-  /// Largest error of an unknown over its tolerance.
-  template <class Error>
-  [[nodiscard]] double share(const State& begin, Error&& error) const noexcept {
-    double largest = 0.0;
-    for (std::size_t k = 0; k < size_; ++k) {
-      const double tolerated =
-          std::max(of_step_.atol + of_step_.rtol * std::abs(begin[k]), k_round_off * std::abs(rates_[k]));
-      largest = std::max(largest, std::abs(error(k)) / tolerated);
-    }
-    return largest;
-  }
-
- private:
-  std::size_t size_;
-  Tolerances of_step_;
-  State rates_;
-};
-
-/// Error estimate of Fehlberg's method as a quadrature. The method's own estimate is zero for rates that depend on xi
-/// alone, and too small if they depend on little else, as just after first touch. For such rates the method is the
-/// Newton-Cotes rule with nodes 0, 1/6 ... 1; the estimate compares it with the rule of order 6 on five of these nodes.
-template <class State>
-class RuleErrors {
- public:
-  explicit RuleErrors(std::size_t size) : size_(size), sums_(zeros<State>(size)) {}
-
-  /// Begins a step. @param stage  index of the first stage to come: 1 if the rates at the step's beginning are known
-  void begin(std::size_t stage) noexcept {
-    stage_ = stage;
-    for (std::size_t k = 0; k < size_; ++k) sums_[k] = 0.0;
-  }
-  /// Takes the rates of the method's stages, in their order.
-  void see(const State& rates) noexcept {
-    const double weight = k_differences[stage_];
-    if (stage_ + 1 < k_differences.size()) ++stage_;
-    if (weight == 0.0) return;
-    for (std::size_t k = 0; k < size_; ++k) sums_[k] += weight * rates[k];
-  }
-  /// Error of unknown k, over the length of the step.
-  [[nodiscard]] double operator[](std::size_t k) const noexcept { return sums_[k]; }
-
- private:
-  // Differences of the weights of the two rules, by stage.
-  static constexpr double k_end = 41.0 / 840.0 - 7.0 / 150.0;
-  static constexpr double k_sixth = 9.0 / 35.0 - 27.0 / 100.0;
-  static constexpr std::array<double, 13> k_differences{
-      0.0,         0.0,         0.0, 0.0,   0.0,  34.0 / 105.0 - 11.0 / 30.0, k_sixth, k_sixth,
-      9.0 / 280.0, 9.0 / 280.0, 0.0, k_end, k_end};
-  std::size_t size_;
-  State sums_;
-  std::size_t stage_ = 0;
-};
-
-/// Error estimate of the extrapolated midpoint rule. The rule computes every second state from the rates in between,
-/// which makes two sequences. The extrapolation uses their mean, and detects only errors that change with the number of
-/// substeps. Where rates jump, one sequence may go on as before the jump and the other as after it, however many
-/// substeps there are. The estimate is the difference of the sequences, extrapolated as the states are.
-template <class State>
-class SequenceErrors {
- public:
-  explicit SequenceErrors(std::size_t size) : size_(size) { table_.fill(zeros<State>(size)); }
-
-  /// Begins a step. @param rates  at the step's beginning; must outlive the step
-  void begin(const State& rates) noexcept {
-    first_ = &rates;
-    column_ = 0;
-    place_ = 0;
-  }
-  /// Takes the rates at the substeps of the midpoint rule, in their order: 2 of them, then 4, 6 ...
-  void see(const State& rates) noexcept {
-    if (column_ == k_most) return;
-    State& sum = table_[column_];
-    const std::size_t places = places_of(column_);
-    if (place_ == 0) {
-      for (std::size_t k = 0; k < size_; ++k) sum[k] = -(*first_)[k];
-    }
-    ++place_;
-    const double weight = place_ == places ? -1.0 : place_ % 2 == 0 ? -2.0 : 2.0;
-    for (std::size_t k = 0; k < size_; ++k) sum[k] += weight * rates[k];
-    if (place_ < places) return;
-    for (std::size_t k = 0; k < size_; ++k) sum[k] /= static_cast<double>(places);
-    for (std::size_t j = column_; j-- > 0;) {
-      const double ratio = static_cast<double>(places) / static_cast<double>(places_of(j));
-      const double onward = 1.0 / (ratio * ratio - 1.0);
-      for (std::size_t k = 0; k < size_; ++k)
-        table_[j][k] = table_[j + 1][k] + onward * (table_[j + 1][k] - table_[j][k]);
-    }
-    ++column_;
-    place_ = 0;
-  }
-  /// Error of unknown k, over the length of the step.
-  [[nodiscard]] double operator[](std::size_t k) const noexcept { return table_[0][k]; }
-
- private:
-  static constexpr std::size_t k_most = 9;  // columns of Odeint's extrapolation table
-  static constexpr std::size_t places_of(std::size_t column) noexcept { return 2 * (column + 1); }
-
-  std::size_t size_;
-  const State* first_ = nullptr;
-  std::array<State, k_most> table_;
-  std::size_t column_ = 0;
-  std::size_t place_ = 0;
-};
 
 /// Gives Odeint the error of a step over its tolerance.
 template <class State>
@@ -315,7 +194,7 @@ class ExplicitStepper final : public Stepper {
           const auto result = reaching_.try_step(system<true>(), between_, at, step);
           // The state reached guides the next one: of several solutions, the one sought need not be the nearest to the
           // step's beginning.
-          if (result == odeint::success && at < xi) form_.reach(at, {between_.data(), form_.size()});
+          if (result == odeint::success && at < xi) form_.complete_on_path(at, {between_.data(), form_.size()});
         } catch (const std::domain_error&) {
           // Stages may lie outside of the domain of the equations although the step does not.
           step *= k_shorter;
@@ -405,7 +284,7 @@ class RosenbrockStepper final : public Stepper {
   /// part up to xi; they are then computed anew for that part.
   const double* state_between(double xi) {
     const double part = xi - begin_;
-    const double length = DifferenceJacobian::reach(begin_, length_) > part ? part : length_;
+    const double length = DifferenceJacobian::range_in_xi(begin_, length_) > part ? part : length_;
     const bool is_known = length == known_for_;
     known_for_ = length;
     return method_.state_at(xi, begin_, is_known);
@@ -413,7 +292,7 @@ class RosenbrockStepper final : public Stepper {
 
   static void rates(void* self, double, const double* z, double* dz) {
     auto& stepper = *static_cast<RosenbrockStepper*>(self);
-    // As an unknown, xi may pass the end of the program's step by round-off, where the prescribed force may be tensile.
+    // As an unknown, xi may pass the end of the leg by round-off, where the prescribed force may be tensile.
     stepper.form_.rates(std::min(z[stepper.size_], 1.0), {z, stepper.size_}, {dz, stepper.size_});
     dz[stepper.size_] = 1.0;
   }
@@ -442,7 +321,7 @@ class RosenbrockStepper final : public Stepper {
 };
 
 template <class State>
-std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances) {
+std::unique_ptr<Stepper> make_method(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances) {
   const auto [rtol, atol] = of_step(tolerances);
   switch (method) {
     case OdeintMethod::dopri5:
@@ -470,9 +349,9 @@ std::unique_ptr<Stepper> make_explicit(OdeintMethod method, ScaledForm& form, co
 }  // namespace
 
 std::unique_ptr<Stepper> make_odeint(OdeintMethod method, ScaledForm& form, const Tolerances& tolerances) {
-  if (form.size() <= 2) return make_explicit<std::array<double, 2>>(method, form, tolerances);
-  if (form.size() <= 8) return make_explicit<std::array<double, 8>>(method, form, tolerances);
-  return make_explicit<std::vector<double>>(method, form, tolerances);
+  if (form.size() <= 2) return make_method<std::array<double, 2>>(method, form, tolerances);
+  if (form.size() <= 8) return make_method<std::array<double, 8>>(method, form, tolerances);
+  return make_method<std::vector<double>>(method, form, tolerances);
 }
 
 }  // namespace monograin

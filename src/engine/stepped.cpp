@@ -13,10 +13,11 @@
 namespace monograin {
 namespace {
 
-// Pieces of a step of the program in which events are located one after the other. Events do not depend on this number
-// as long as a guard crosses zero once between two evaluations.
+// Pieces of a leg in which events are located one after the other: they end at multiples of 1/k_pieces. Events do not
+// depend on this number as long as a guard crosses zero once between two evaluations.
 constexpr double k_pieces = 32.0;
-constexpr double k_at_end_of_piece = 1e-9;  // of a piece: a remainder as short as this belongs to the next piece
+// A piece that begins closer than this to a multiple (in pieces) ends at the one after it.
+constexpr double k_at_end_of_piece = 1e-9;
 
 class Stepped final : public EventLocator {
  public:
@@ -46,9 +47,8 @@ class Stepped final : public EventLocator {
       ++statistics_.steps;
       statistics_.last_step = step_end_ - begin_;
     }
-    const double end =
-        std::min(std::min(1.0, (std::floor(begin_ * k_pieces + k_at_end_of_piece) + 1.0) / k_pieces), step_end_);
-    move_end(end);
+    const double next_multiple = (std::floor(begin_ * k_pieces + k_at_end_of_piece) + 1.0) / k_pieces;
+    move_end(std::min(std::min(1.0, next_multiple), step_end_));
     if (guard_set_.size() > 0) sample_middle();
     locate_event();
     return {.xi = end_, .hit_guard = !fired_.empty()};
@@ -133,13 +133,6 @@ class Stepped final : public EventLocator {
   double step_end_ = 0.0;
 };
 
-// Increments of difference quotients: k_share_of_step keeps them well within the step for which they are meant,
-// k_least_increment (over xi) well above the round-off of xi.
-constexpr double k_share_of_step = 0.1;
-constexpr double k_least_increment = 1e-14;
-const double k_cubic_root = std::cbrt(k_epsilon);
-constexpr double k_least_size = 1e-2;  // least size of an unknown, over its scale, that scales its increment
-
 /// Forward Euler with a fixed step, as in explicit discrete-element codes: a transition takes effect at the end of the
 /// step that passes it.
 class FixedStep final : public Integrator {
@@ -207,7 +200,7 @@ class FixedStep final : public Integrator {
   [[nodiscard]] long most_steps() const noexcept override { return std::lround(1.0 / step_) + k_most_internal_steps; }
 
  private:
-  static constexpr double k_least_step = 1e-7;  // of a step of the program
+  static constexpr double k_least_step = 1e-7;  // step coordinates
 
   GuardSet& guard_set_;
   ScaledForm form_;
@@ -222,63 +215,6 @@ class FixedStep final : public Integrator {
 };
 
 }  // namespace
-
-double DifferenceJacobian::reach(double xi, double length) noexcept {
-  return 2.0 * std::max(std::min(k_cubic_root, k_share_of_step * length), k_least_increment * xi);
-}
-
-void DifferenceJacobian::at(double xi, std::span<const double> z, double length, std::span<double> jacobian,
-                            std::span<double> by_xi) {
-  static const double k_root = std::sqrt(k_epsilon);
-  const std::size_t n = z.size();
-  std::ranges::copy(z, point_.begin());
-  form_.rates(xi, point_, base_);
-  std::ranges::fill(jacobian, 0.0);
-  double largest_way = k_root;  // if nothing moves
-  for (const double rate : base_) largest_way = std::max(largest_way, std::abs(length * rate));
-  for (std::size_t j = 0; j < n; ++j) {
-    if (form_.is_quadrature(j)) continue;  // no rate depends on it
-    const double size = std::abs(z[j]);
-    // Just after first touch, the rates change over the overlap, which is much smaller than the other unknowns. Steps
-    // are as short as that, so the change of the unknown in a step bounds the increment.
-    const double way = base_[j] != 0.0 ? std::abs(length * base_[j]) : largest_way;
-    const double wanted = std::max(std::min(k_share_of_step * way, k_cubic_root * std::max(size, k_least_size)),
-                                   k_root * std::max(size, way));
-    const double seen = sample_beside(xi, j, wanted);
-    for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (shifted_[i] - beyond_[i]) / seen;
-  }
-  // A second-order quotient over a good part of the step. Next to a pole, round-off of xi leaves few digits of a
-  // quotient over a much smaller part, and a first-order quotient over the whole step has a large relative error.
-  const double onward = reach(xi, length);
-  // Beyond xi = 1 another step of the program begins: the quotient is taken backwards.
-  const double step = shift_within_domain(0.5 * (xi + onward > 1.0 ? -onward : onward), [&](double by) {
-    form_.rates(xi + by, point_, shifted_);
-    form_.rates(xi + 2.0 * by, point_, beyond_);
-  });
-  for (std::size_t i = 0; i < n; ++i) {
-    by_xi[i] = (4.0 * (shifted_[i] - base_[i]) - (beyond_[i] - base_[i])) / (2.0 * step);
-  }
-}
-
-double DifferenceJacobian::sample_beside(double xi, std::size_t j, double wanted) {
-  const double z = point_[j];
-  const double step = shift_within_domain(wanted, [&](double by) {
-    point_[j] = z + by;
-    form_.rates(xi, point_, shifted_);
-  });
-  const double forth = form_.change_of_rates(base_, shifted_);
-  double back = k_infinity;
-  try {
-    point_[j] = z - step;
-    form_.rates(xi, point_, beyond_);
-    back = form_.change_of_rates(base_, beyond_);
-  } catch (const std::domain_error&) {
-  }
-  point_[j] = z;
-  if (std::max(forth, back) <= k_jump) return 2.0 * step;
-  std::ranges::copy(base_, (forth <= back ? beyond_ : shifted_).begin());
-  return step;
-}
 
 std::unique_ptr<Integrator> make_stepped(OdeintMethod method, Equations& system, GuardSet& guard_set,
                                          const Tolerances& tolerances) {

@@ -20,7 +20,7 @@ class ScaledForm {
         y_(form_.size()),
         dy_(form_.size()),
         begin_(system.unknowns().size()),
-        seen_(system.unknowns().size()) {}
+        last_on_curve_(system.unknowns().size()) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return form_.size(); }
   [[nodiscard]] double change_of_rates(std::span<const double> before, std::span<const double> after) const {
@@ -52,8 +52,8 @@ class ScaledForm {
   /// Keeps the beginning of a step, with its complete state, as the first guess for states in the step.
   void begin_step(double xi, std::span<const double> complete) {
     std::ranges::copy(complete, begin_.begin());
-    std::ranges::copy(complete, seen_.begin());
-    seen_xi_ = last_xi_ = xi;
+    std::ranges::copy(complete, last_on_curve_.begin());
+    last_on_curve_xi_ = last_rates_xi_ = xi;
   }
 
   /// Completes a state on the solution curve; the result guides the states after it.
@@ -61,16 +61,16 @@ class ScaledForm {
     scale_back(z);
     guess_on_curve(xi);
     form_.complete(xi, y_, complete);
-    std::ranges::copy(complete, seen_.begin());
-    seen_xi_ = xi;
+    std::ranges::copy(complete, last_on_curve_.begin());
+    last_on_curve_xi_ = xi;
   }
 
   /// Completes a state on the curve to which rates have led, and from which they lead on. The search starts from the
   /// state of the last call of rates(), not from an earlier state on the curve.
-  void reach(double xi, std::span<const double> z) {
+  void complete_on_path(double xi, std::span<const double> z) {
     scale_back(z);
-    std::ranges::copy(form_.complete(xi, y_), seen_.begin());
-    seen_xi_ = xi;
+    std::ranges::copy(form_.complete(xi, y_), last_on_curve_.begin());
+    last_on_curve_xi_ = xi;
   }
 
   /// Gives the scaled rates d/dxi of a scaled state.
@@ -79,8 +79,8 @@ class ScaledForm {
     ++evaluations_;
     scale_back(z);
     // xi goes back from a stage or a rejected step, whose complete state may lie far from the curve.
-    if (xi < last_xi_) guess_on_curve(xi);
-    last_xi_ = xi;
+    if (xi < last_rates_xi_) guess_on_curve(xi);
+    last_rates_xi_ = xi;
     form_.rates(xi, y_, dy_);
     if (!all_finite(dy_)) throw std::domain_error("the rates of the equations are not finite");
     for (std::size_t k = 0; k < size(); ++k) dz[k] = dy_[k] / form_.unknown(k).scale;
@@ -93,13 +93,14 @@ class ScaledForm {
 
   /// Makes the last complete state on the curve before xi the first guess. Stages may lie far from the curve, where the
   /// equations have other solutions.
-  void guess_on_curve(double xi) { form_.guess(xi < seen_xi_ ? begin_ : seen_); }
+  void guess_on_curve(double xi) { form_.guess(xi < last_on_curve_xi_ ? begin_ : last_on_curve_); }
 
   ExplicitForm form_;
   std::vector<double> y_, dy_;
-  std::vector<double> begin_, seen_;  ///< complete states: at the beginning of the step, and the last one on the curve
-  double seen_xi_ = 0.0;
-  double last_xi_ = 0.0;  ///< step coordinate of the last call of rates()
+  std::vector<double> begin_;          ///< complete state at the beginning of the step
+  std::vector<double> last_on_curve_;  ///< last complete state on the curve
+  double last_on_curve_xi_ = 0.0;
+  double last_rates_xi_ = 0.0;  ///< step coordinate of the last call of rates()
   long evaluations_ = 0;
 };
 
@@ -134,9 +135,9 @@ class DifferenceJacobian {
   explicit DifferenceJacobian(ScaledForm& form)
       : form_(form), base_(form.size()), shifted_(form.size()), beyond_(form.size()), point_(form.size()) {}
 
-  /// Distance from xi within which rates are evaluated for d(rates)/dxi. It shrinks with the length of the step for
+  /// Distance from xi up to which rates are evaluated for d(rates)/dxi. It shrinks with the length of the step for
   /// which the derivative is meant, because a regime may be as short as that step.
-  [[nodiscard]] static double reach(double xi, double length) noexcept;
+  [[nodiscard]] static double range_in_xi(double xi, double length) noexcept;
   /// Computes both derivatives at (xi, z).
   /// @param length    of the step for which they are meant
   /// @param jacobian  receives d(rates)/dz, row by row

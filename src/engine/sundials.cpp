@@ -63,8 +63,9 @@ std::optional<Crossing> crossing_before_branch_end(const GuardSet& guard_set, st
   return first;
 }
 
-/// Bisects for the root within the accuracy of the libraries if a guard of the system exceeds the tolerance at the end
-/// of the step. Conditions of the program need no such accuracy: no mode begins where they are met.
+/// Searches for the root within the accuracy of the libraries if a guard of the system exceeds the tolerance at the end
+/// of the step. Conditions of the program need no such accuracy: no mode begins where they are met. A bisection finds
+/// the first position at which all guards that fire are beyond zero; methods for the root of one function do not apply.
 double polished_root(const GuardSet& guard_set, std::span<const std::size_t> fired, double begin, double end,
                      double tolerance, const std::function<void(double, std::span<double>)>& values_at) {
   std::vector<double> values(guard_set.size());

@@ -67,7 +67,7 @@ inline constexpr int k_most_failures = 50;
 inline constexpr double k_above_round_off = 64.0 * k_epsilon;
 
 /// Factor on the length of a step in which the equations end.
-inline constexpr double k_retreat = 0.1;
+inline constexpr double k_shorter_step = 0.1;
 
 /// Takes one step. If the trials or guards of the step leave the domain of the equations, tries it again with a shorter
 /// step than the library would choose.
@@ -84,7 +84,7 @@ int step_within_domain(Pending& pending, double begin, Evolve&& evolve, CurrentS
   for (double step = 0.0; flag < 0 && pending.nearest_domain_end(); flag = evolve()) {
     // Before its first step the library has no current step.
     if (step == 0.0 && (current_step(&step) != 0 || !(step > 0.0))) step = 1.0;
-    step = k_retreat * std::min(step, 1.0 - begin);
+    step = k_shorter_step * std::min(step, 1.0 - begin);
     if (!(step > least_progress(begin))) throw *pending.nearest_domain_end();
     restart(step);
   }

@@ -366,11 +366,9 @@ class SundialsOde final : public Integrator {
     });
   }
 
-  /// Corrects the beginning of a step of BDF, once its error exceeds the tolerance of the curve: to a multistep method,
-  /// any smaller correction is just a jump, with round-off in it. Where the round-off of xi is the tolerance of a step,
-  /// the limit is the same multiple of that tolerance as elsewhere. Otherwise the method would restart all the time,
-  /// with the errors of first steps, which no correction removes along a yield surface. Adams' method is not corrected:
-  /// it gains nothing where it is slow, at the stiff ends of segments on a yield surface.
+  /// Corrects the beginning of a step of BDF, once its error exceeds the tolerance of the curve. The method restarts
+  /// after a correction, with the errors of first steps, and smaller corrections would restart it all the time. Adams'
+  /// method is not corrected: it gains nothing where it is slow, at the stiff ends of segments on a yield surface.
   /// @return true if begin_state_ has changed
   bool corrects_begin() {
     if (method_ != OdeMethod::cvode_bdf || !form_.has_corrections()) return false;
@@ -381,6 +379,7 @@ class SundialsOde final : public Integrator {
     bool is_off = false;
     for (std::size_t k = 0; k < state.size(); ++k) {
       const double size = std::max(std::abs(state[k]), form_.unknown(k).scale);
+      // Where the round-off of xi is the tolerance of a step, the limit is the same multiple of it as elsewhere.
       const double round_off = k_round_off * std::abs(view(rates_.get())[k]) / k_share_of_many;
       is_off = is_off || std::abs(better[k] - state[k]) > std::max(tolerances_.rtol * size, round_off);
     }
@@ -414,8 +413,8 @@ class SundialsOde final : public Integrator {
                       N_Vector) noexcept {
     static const double k_root = std::sqrt(k_epsilon);
     auto& ode = *static_cast<SundialsOde*>(self);
-    double step = 0.0;
-    if (Library::current_gamma(ode.memory_.get(), &step) != 0 ||
+    double gamma = 0.0;  // step length times the coefficient of the method
+    if (Library::current_gamma(ode.memory_.get(), &gamma) != 0 ||
         Library::error_weights(ode.memory_.get(), ode.weights_.get()) != 0) {
       return -1;
     }
@@ -423,12 +422,13 @@ class SundialsOde final : public Integrator {
     const auto before = view(dy);
     const double norm = N_VWrmsNorm(dy, ode.weights_.get());
     constexpr double k_increment_ratio = 1e3;  // over the round-off, as in the library
-    const double round_off = k_increment_ratio * k_epsilon * static_cast<double>(values.size()) * std::abs(step) * norm;
+    const double round_off =
+        k_increment_ratio * k_epsilon * static_cast<double>(values.size()) * std::abs(gamma) * norm;
     const double least = norm > 0.0 ? round_off : 1.0;
     for (std::size_t j = 0; j < values.size(); ++j) {
       const double value = values[j];
       const double tolerated = 1.0 / view(ode.weights_.get())[j];
-      const double in_step = std::min(std::abs(step * before[j]), tolerated);
+      const double in_step = std::min(std::abs(gamma * before[j]), tolerated);
       double increment = std::max({k_root * std::abs(value), least * tolerated, in_step});
       const int flag = ode.pending_.guard([&] {
         const auto shift = [&](double by) {

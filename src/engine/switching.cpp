@@ -23,7 +23,7 @@ class Switching final : public Integrator {
 
   void begin(double xi, std::span<const double> y) override {
     segment_steps_ = explicit_->statistics().steps;
-    active_ = system_.is_solvable_here() ? direct_.get() : integrating_;
+    active_ = system_.is_solvable_here() ? direct_.get() : path_integrator_;
     active_->begin(xi, y);
   }
 
@@ -31,7 +31,7 @@ class Switching final : public Integrator {
     if (active_ == explicit_.get() && explicit_->statistics().steps - segment_steps_ > k_most_explicit_steps) {
       // Equations that are stiff once are taken for stiff in all later segments.
       explicit_->dense_output(end_, state_);
-      active_ = integrating_ = implicit_.get();
+      active_ = path_integrator_ = implicit_.get();
       active_->begin(end_, state_);
     }
     const Advance step = active_->advance();
@@ -65,7 +65,7 @@ class Switching final : public Integrator {
   std::unique_ptr<Integrator> direct_;
   std::unique_ptr<Integrator> explicit_;
   std::unique_ptr<Integrator> implicit_;
-  Integrator* integrating_ = explicit_.get();  ///< integrator of segments that are not solved for
+  Integrator* path_integrator_ = explicit_.get();  ///< integrator of segments that are not solved for
   Integrator* active_ = explicit_.get();
   std::vector<double> state_;
   double end_ = 0.0;
