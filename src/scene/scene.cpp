@@ -9,6 +9,7 @@
 
 #include "catalogue.hpp"
 #include "scenario/model_input.hpp"
+#include "scene/program_reach.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -68,17 +69,6 @@ std::vector<std::string> class_names(const std::vector<Wall>& walls, const std::
   return names;
 }
 
-/// Share of a withdrawal that counts as depth. The whole distance would make the absolute tolerances of the contacts as
-/// large as their forces. Also used for a wall that is pulled without adhesion.
-constexpr double k_share_of_withdrawal = 1e-4;
-
-/// Factor within which laws predict displacement or force at a condition on another quantity. A condition that the last
-/// ramp may already have met, within that factor, need not end the next ramp.
-constexpr double k_known_within = 3.0;
-
-/// Relative accuracy with which models predict the depth of a contact under a force or at a condition.
-constexpr double k_same_depth = 1e-6;
-
 /// True if a free centre may move: it stays at rest if the normals of every class add up to zero.
 bool may_move_centre(const CheckedScenario& scenario, const std::vector<ContactClass>& classes) {
   return scenario.loading.centre_is_free && std::ranges::any_of(classes, [](const ContactClass& c) {
@@ -86,121 +76,6 @@ bool may_move_centre(const CheckedScenario& scenario, const std::vector<ContactC
            for (const Eigen::Vector3d& normal : c.normals) sum += normal;
            return sum.norm() > k_no_direction * c.multiplicity();
          });
-}
-
-/// A program and the model that predicts how far it leads.
-struct Program {
-  const Model& model;
-  const ModelInput& input;
-  bool moves_centre = false;
-};
-
-/// True if a model may predict where a condition ends the ramp of its wall.
-bool is_foreseen(const Until& until) { return until.wall.empty() && (until.value > 0.0 || until.is_event()); }
-
-/// Displacement and force at which a condition ends a ramp; infinity if only a run of the model can show it.
-Reach end_of(const Program& program, const Until& until) {
-  Reach end{.displacement = k_infinity, .force = k_infinity};
-  if (!is_foreseen(until)) return end;
-  if (program.model.reach != nullptr) end = program.model.reach(program.input, until);
-  // A centre that moves follows the walls: they move farther than their contacts are deep.
-  if (program.moves_centre) end.displacement = k_infinity;
-  if (until.is_of(Quantity::displacement)) end.displacement = until.value;
-  if (until.is_of(Quantity::force)) end.force = until.value;
-  return end;
-}
-
-/// Number of steps up to and including the first one that ends every run, because walls of the model cannot pull.
-std::size_t count_to_pull(const Model& model, const std::vector<Channel>& channels) {
-  std::size_t count = 0;
-  for (const Channel& channel : channels) count = std::max(count, channel.program.size());
-  if (!model.stops_when_pulled) return count;
-  for (std::size_t k = 0; k < count; ++k) {
-    bool pulls = false;
-    bool may_end_before = false;  // a condition on one wall ends the step of all
-    for (const Channel& channel : channels) {
-      if (k >= channel.program.size()) continue;
-      const Step& step = channel.program[k];
-      pulls = pulls || (step.kind == Step::Kind::force && step.target < 0.0 && step.share == 1.0);
-      may_end_before = may_end_before || !step.until.empty();
-    }
-    if (pulls && !may_end_before) return k + 1;
-  }
-  return count;
-}
-
-/// Index of the first step in which a wall unloads, if the model has no law for unloading; else the number of steps.
-std::size_t first_unloading_step(const Program& program, std::span<const Step> steps) {
-  const auto can_unload = program.model.can_unload;
-  if (steps.size() < 2 || can_unload == nullptr || can_unload(program.input)) return steps.size();
-  double deepest = 0.0;  // lower bound of the depth so far
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    const Step& step = steps[k];
-    double depth = step.kind == Step::Kind::detach ? 0.0 : deepest;
-    if (step.kind == Step::Kind::displacement) depth = step.target;
-    if (step.kind == Step::Kind::force) {
-      depth =
-          step.target > 0.0 ? end_of(program, {.quantity = Quantity::force, .value = step.target}).displacement : 0.0;
-    }
-    if (!std::isfinite(depth)) continue;  // ends at a limit of the law
-    if (deepest > k_resolution * program.input.radius && depth < (1.0 - k_same_depth) * deepest) return k;
-    for (const Until& until : step.until) {
-      depth = is_foreseen(until) ? std::min(depth, (1.0 - k_same_depth) * end_of(program, until).displacement) : 0.0;
-    }
-    deepest = std::max(deepest, depth);
-  }
-  return steps.size();
-}
-
-/// Number of steps that a run reaches. Targets of later steps must not count: tolerances could become as large as what
-/// is reached.
-std::size_t steps_reached(const Program& program, const std::vector<Channel>& channels) {
-  std::size_t count = count_to_pull(program.model, channels);
-  for (const Channel& channel : channels) {
-    const std::size_t first = first_unloading_step(program, channel.program);
-    if (first < channel.program.size()) count = std::min(count, first);
-  }
-  return count;
-}
-
-/// Upper bound of the value to which a ramp leads before a condition ends it.
-/// @param reach     that value without conditions
-/// @param is_first  the step is the first of its program
-/// @param before    upper bound of the value to which the last ramp of this kind has led
-double reach_until(const Program& program, const Step& step, double reach, bool is_first, double before) {
-  const bool is_displacement = step.kind == Step::Kind::displacement;
-  for (const Until& until : step.until) {
-    // Later steps may begin beyond an event, or beyond a value, which then does not end them.
-    if (until.is_event() && !is_first) continue;
-    const Reach end = end_of(program, until);
-    const double place = is_displacement ? end.displacement : end.force;
-    const bool is_exact = until.is_of(is_displacement ? Quantity::displacement : Quantity::force);
-    if (place > (is_exact ? 1.0 : k_known_within) * before) reach = std::min(reach, place);
-  }
-  return reach;
-}
-
-/// Largest displacement [m] or force [N] to which the programs lead.
-double largest_target(const Program& program, const std::vector<Channel>& channels, Step::Kind kind) {
-  double largest = 0.0;
-  const bool adheres = program.input.optional_material("surface_energy").value_or(0.0) > 0.0;
-  const std::size_t count = steps_reached(program, channels);
-  for (const Channel& channel : channels) {
-    double before = 0.0;  // upper bound of the value to which the last ramp of this kind has led
-    for (const Step& step : std::span(channel.program).first(std::min(count, channel.program.size()))) {
-      if (step.kind == Step::Kind::hold) continue;
-      if (step.kind != kind) {
-        before = 0.0;
-        continue;
-      }
-      const bool is_withdrawal = step.target < 0.0 && (kind == Step::Kind::displacement || !adheres);
-      const double target = (is_withdrawal ? k_share_of_withdrawal : 1.0) * std::abs(step.target);
-      const double reach = reach_until(program, step, target, &step == &channel.program.front(), before);
-      before = is_withdrawal ? 0.0 : reach;
-      largest = std::max(largest, reach);
-    }
-  }
-  return largest;
 }
 
 /// Channels of a model without walls. A lateral one follows the steps, and takes as long as they do.
@@ -315,10 +190,8 @@ Scene make_scene(const CheckedScenario& scenario, bool merges_walls) {
     add_walls(scenario, merges_walls, scene);
   else
     scene.channels = channels_without_walls(scenario, model.channels(input));
-  const Program program{model, input, may_move_centre(scenario, scene.classes)};
-  scene.system = model.bind(input, scene.classes,
-                            {.displacement = largest_target(program, scene.channels, Step::Kind::displacement),
-                             .force = largest_target(program, scene.channels, Step::Kind::force)});
+  const bool moves_centre = may_move_centre(scenario, scene.classes);
+  scene.system = model.bind(input, scene.classes, program_reach(model, input, scene.channels, moves_centre));
 
   const auto unknowns = scene.system->unknowns();
   const auto is_algebraic = [](const Unknown& u) { return u.kind == Unknown::Kind::algebraic; };

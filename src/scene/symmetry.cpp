@@ -10,6 +10,8 @@
 namespace monograin {
 namespace {
 
+/// True if two steps are equal to the last digit: walls of one class have one program, or programs with equal numbers.
+/// Normals may be computed, and are compared to within round-off.
 bool same_step(const Step& a, const Step& b) {
   return a.kind == b.kind && a.target == b.target && a.duration == b.duration && a.rate == b.rate &&
          a.until == b.until && a.leg == b.leg && a.share == b.share;
