@@ -31,41 +31,6 @@ struct Excursion {
 /// Unloadings from the largest x so far, each with its reloading.
 [[nodiscard]] std::vector<Excursion> excursions(const XyCurve& curve);
 
-/// Rows at which x turns, with the first and the last row. Between them x is monotone apart from noise.
-///
-/// Paths of at most two rows between turns are noise if there are at least three of them. A turn counts then if x comes
-/// back by more than nine times noise_in(), and by more than 0.2 % of its range. Without noise every turn counts, but
-/// for paths of at most two rows and at most 0.2 % of the range.
-[[nodiscard]] std::vector<std::size_t> turning_points(std::span<const double> x);
-
-/// Standard deviation of the noise of x: from the median of its second differences, which a ramp does not have, but not
-/// more than the longest path of at most two rows between turns, because uneven steps have second differences, too. If
-/// most rows are equal to the one before, as those of a display with few digits are, the median of these paths takes
-/// the place of that of the differences. 0 if there are less than three such paths.
-[[nodiscard]] double noise_in(std::span<const double> x);
-
-/// Point at which x turns, or begins or ends.
-struct Turn {
-  std::size_t last_row = 0;  ///< of the branch that ends there
-  double x = 0.0;
-  bool is_known = true;        ///< false: x may turn farther on, between the extreme row and the one beside it
-  std::size_t held_begin = 0;  ///< rows in which x is held at the turn: the first one, and the one after the last
-  std::size_t held_end = 0;
-
-  [[nodiscard]] std::size_t held_rows() const noexcept { return held_end - held_begin; }
-};
-
-/// The turns of a curve whose rows are few, or have noise. x turns where straight lines through the rows of both sides
-/// meet, because the extreme row has the largest noise, and because x of rows at equal times is farthest between two of
-/// them. If x is held there, it turns at the mean of the hold: at least five rows at constant x between the two lines,
-/// if that fits the rows better than the lines alone by more than noise would, if their slope is not significant, and
-/// if their mean is as near to the extreme x as that of noise. Where the rows are far from such lines, half or a
-/// quarter of the path beside the turn shows where it is. Without noise the lines need at least three rows in equal
-/// steps on each side; otherwise x turns in the extreme row, and equal rows are a hold. The first and the last row have
-/// their own x.
-/// @param points  turning_points() of x
-[[nodiscard]] std::vector<Turn> turns_of(std::span<const double> x, std::span<const std::size_t> points);
-
 /// Mean slope dy/dx of the first part of an unloading, over which y falls by 5 %; of the whole unloading if y falls by
 /// less.
 [[nodiscard]] double unloading_slope(const XyCurve& unloading);

@@ -1,6 +1,7 @@
 #include "history/compare.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -24,7 +25,7 @@ struct Sample {
   double x;
   double reference;
   double difference;
-  bool counts;          ///< true if at least one of the curves is defined here
+  bool is_defined;      ///< true if at least one of the curves is defined here
   double beyond = 0.0;  ///< distance of x from the nearest end of the other curve, if it lies beyond that
 };
 
@@ -59,8 +60,9 @@ struct Curve {
 
 // --- pieces
 
-/// Rows at which x turns back, with the first and the last row. If several rows are at a turn, the last one counts: it
-/// ends one piece and starts the next.
+/// Rows at which x turns back, with the first and the last row, in computed curves, whose x has no noise: every turn by
+/// more than the tolerance counts. For measured curves see turning_points(). If several rows are at a turn, the last
+/// one counts: it ends one piece and starts the next.
 [[nodiscard]] std::vector<std::size_t> turning_rows(std::span<const double> x, double tolerance) {
   std::vector<std::size_t> turns;
   double direction = 0.0;
@@ -116,7 +118,7 @@ struct Curve {
 /// Evaluates a piece of the other curve at any x, given as Knot::along.
 class PieceReader {
  public:
-  PieceReader(const std::vector<Knot>& knots, double range) : knots_(knots), reach_(k_same_event * range) {}
+  PieceReader(const std::vector<Knot>& knots, double range) : knots_(knots), tolerance_(k_same_event * range) {}
 
   [[nodiscard]] double left_limit(double along) const noexcept { return read(along, &Knot::left); }
   [[nodiscard]] double right_limit(double along) const noexcept { return read(along, &Knot::right); }
@@ -134,7 +136,7 @@ class PieceReader {
   /// The nearest jump within k_same_event of the range of x, or nullptr.
   [[nodiscard]] const Knot* jump_near(double along) const noexcept {
     const Knot* nearest = nullptr;
-    double reach = reach_;
+    double reach = tolerance_;
     for (auto knot = first_not_before(along - reach); knot != knots_.end() && knot->along <= along + reach; ++knot) {
       const double distance = std::abs(knot->along - along);
       if (!knot->is_jump || distance > reach) continue;
@@ -151,14 +153,14 @@ class PieceReader {
 
   [[nodiscard]] double read(double along, double Knot::*side) const noexcept {
     const auto next = first_not_before(along);
-    if (next == knots_.end()) return along - knots_.back().along <= reach_ ? knots_.back().*side : k_nan;
+    if (next == knots_.end()) return along - knots_.back().along <= tolerance_ ? knots_.back().*side : k_nan;
     if (next->along == along) return (*next).*side;
-    if (next == knots_.begin()) return next->along - along <= reach_ ? (*next).*side : k_nan;
+    if (next == knots_.begin()) return next->along - along <= tolerance_ ? (*next).*side : k_nan;
     return interpolated(*std::prev(next), *next, along);
   }
 
   const std::vector<Knot>& knots_;
-  double reach_;
+  double tolerance_;
 };
 
 /// Difference of two recorded values; infinite if only one of them is defined, NaN if none is.
@@ -172,29 +174,38 @@ class PieceReader {
   return std::abs(from_right) < std::abs(from_left) ? from_right : from_left;
 }
 
+/// Sample at a row of a where it has a single value.
+[[nodiscard]] Sample sample_row(const Knot& knot, double x, const PieceReader& b) {
+  const double left = b.left_limit(knot.along);
+  const double right = b.right_limit(knot.along);
+  const double difference = b.has_row(knot.along) ? nearer_difference(recorded_difference(knot.left, left),
+                                                                      recorded_difference(knot.left, right))
+                                                  : nearer_difference(left - knot.left, right - knot.left);
+  return {x, knot.left, difference, !std::isnan(knot.left) || !std::isnan(left), b.beyond(knot.along)};
+}
+
+/// Samples before and after a jump of a. The jump of b may be a little earlier or later: left limits are read before
+/// both jumps, right limits after both.
+[[nodiscard]] std::array<Sample, 2> sample_jump(const Knot& knot, double x, const PieceReader& b) {
+  const Knot* const jump = b.jump_near(knot.along);
+  const double before = jump ? std::min(knot.along, jump->along) : knot.along;
+  const double after = jump ? std::max(knot.along, jump->along) : knot.along;
+  const double left = b.left_limit(before);
+  const double right = b.right_limit(after);
+  const double beyond = b.beyond(knot.along);
+  return {Sample{x, knot.left, left - knot.left, !std::isnan(knot.left) || !std::isnan(left), beyond},
+          Sample{x, knot.right, right - knot.right, !std::isnan(knot.right) || !std::isnan(right), beyond}};
+}
+
 void sample_piece(const Piece& a, const Piece& b, double range, std::vector<Sample>& samples) {
   const PieceReader reader(b.knots, range);
   for (const Knot& knot : a.knots) {
     const double x = a.direction * knot.along;
-    if (!knot.is_jump) {
-      const double left = reader.left_limit(knot.along);
-      const double right = reader.right_limit(knot.along);
-      const double difference = reader.has_row(knot.along) ? nearer_difference(recorded_difference(knot.left, left),
-                                                                               recorded_difference(knot.left, right))
-                                                           : nearer_difference(left - knot.left, right - knot.left);
-      samples.push_back(
-          {x, knot.left, difference, !std::isnan(knot.left) || !std::isnan(left), reader.beyond(knot.along)});
-      continue;
+    if (knot.is_jump) {
+      for (const Sample& sample : sample_jump(knot, x, reader)) samples.push_back(sample);
+    } else {
+      samples.push_back(sample_row(knot, x, reader));
     }
-    // The jump of b may be a little earlier or later: left limits are read before both jumps, right limits after both.
-    const Knot* const jump = reader.jump_near(knot.along);
-    const double before = jump ? std::min(knot.along, jump->along) : knot.along;
-    const double after = jump ? std::max(knot.along, jump->along) : knot.along;
-    const double left = reader.left_limit(before);
-    const double right = reader.right_limit(after);
-    const double beyond = reader.beyond(knot.along);
-    samples.push_back({x, knot.left, left - knot.left, !std::isnan(knot.left) || !std::isnan(left), beyond});
-    samples.push_back({x, knot.right, right - knot.right, !std::isnan(knot.right) || !std::isnan(right), beyond});
   }
 }
 
@@ -269,7 +280,7 @@ struct PathIntegrals {
     const Sample& from = samples[k - 1];
     const Sample& to = samples[k];
     const double dx = std::abs(to.x - from.x);
-    if (!(dx > 0.0) || !from.counts || !to.counts) continue;
+    if (!(dx > 0.0) || !from.is_defined || !to.is_defined) continue;
     sums.length += dx;
     if (std::isnan(from.difference) || std::isnan(to.difference)) {
       sums.compared_length += compared_part(from, to);
@@ -291,7 +302,7 @@ struct PathIntegrals {
   double largest_reference = 0.0;
   double peak_place = -k_infinity;
   double reference_at_peak = 0.0;
-  for (const auto& [x, reference, difference, counts, beyond] : samples) {
+  for (const auto& [x, reference, difference, is_defined, beyond] : samples) {
     if (std::abs(difference) > largest) {
       largest = std::abs(difference);
       result.linf_at = x;

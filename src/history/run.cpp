@@ -48,28 +48,30 @@ constexpr std::pair<std::string_view, std::string_view> k_symbols[] = {
 
 std::vector<std::pair<std::string, std::string>> header_of(const Run& run) {
   const CheckedScenario& scenario = run.scenario;
-  std::vector<std::pair<std::string, std::string>> header{{"program", fmt::format("monograin {}", version())},
-                                                          {"scenario", scenario.name},
-                                                          {"scenario_digest", scenario_digest(scenario)},
-                                                          {"status", std::string(to_string(run.record.status))},
-                                                          {"model", scenario.model},
-                                                          {"integrator", run.integrator.used},
-                                                          {"rtol", fmt::format("{}", scenario.numerics.rtol)},
-                                                          {"atol", fmt::format("{}", scenario.numerics.atol)}};
   const Model& model = *find_model(scenario.model);
-  if (scenario.radius > 0.0) header.emplace_back("R0", fmt::format("{}", scenario.radius));
-  if (!model.sign.empty()) header.emplace_back("sign", model.sign);
+  std::vector<std::pair<std::string, std::string>> header;
+  const auto add = [&header](std::string_view key, std::string value) { header.emplace_back(key, std::move(value)); };
+  add("program", fmt::format("monograin {}", version()));
+  if (!scenario.title.empty()) add("title", scenario.title);
+  add("scenario", scenario.name);
+  add("scenario_digest", scenario_digest(scenario));
+  add("status", std::string(to_string(run.record.status)));
+  if (!run.record.message.empty()) add("message", run.record.message);
+  add("model", scenario.model);
+  add("integrator", run.integrator.used);
+  add("rtol", fmt::format("{}", scenario.numerics.rtol));
+  add("atol", fmt::format("{}", scenario.numerics.atol));
+  if (scenario.radius > 0.0) add("R0", fmt::format("{}", scenario.radius));
+  if (!model.sign.empty()) add("sign", std::string(model.sign));
   for (const auto& [key, symbol] : k_symbols) {
     const auto found = scenario.material.find(std::string(key));
-    if (found != scenario.material.end()) header.emplace_back(symbol, fmt::format("{}", found->second));
+    if (found != scenario.material.end()) add(symbol, fmt::format("{}", found->second));
   }
   for (const auto& [key, value] : scenario.material) {
     if (std::ranges::find(k_symbols, key, [](const auto& symbol) { return symbol.first; }) == std::end(k_symbols))
-      header.emplace_back(key, fmt::format("{}", value));
+      add(key, fmt::format("{}", value));
   }
-  for (std::string& reference : reference_texts(model)) header.emplace_back("reference", std::move(reference));
-  if (!run.record.message.empty()) header.insert(header.begin() + 4, {"message", run.record.message});
-  if (!scenario.title.empty()) header.insert(header.begin() + 1, {"title", scenario.title});
+  for (std::string& reference : reference_texts(model)) add("reference", std::move(reference));
   return header;
 }
 

@@ -329,6 +329,7 @@ void StagedFolder::make_staged() {
     if (lock_ >= 0) close(lock_);
     lock_ = LockedFolder(staged_, LOCK_EX).release();
   } while (!fs::exists(staged_));
+  // mkdtemp() lets only the owner in: gives the folder the permissions of any new folder.
   struct stat made = {};
   const mode_t mask = umask(0);
   umask(mask);

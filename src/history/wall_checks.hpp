@@ -30,7 +30,8 @@ struct WallPlane {
                                                        double radius);
 
 /// Warning where the walls push a fixed centre towards another wall, by more than 1 % of the largest force of a wall;
-/// empty if they never do.
+/// empty if they never do. A net force away from all walls, as that of a single wall, is no fault: no other wall could
+/// balance it.
 /// @param history  has a column `force` for each class; rows in which one is undefined do not count
 [[nodiscard]] std::optional<std::string> balance_warning(const Table& history, std::span<const ContactClass> classes);
 

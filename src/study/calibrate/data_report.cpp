@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "figure/page.hpp"
-#include "history/branches.hpp"
+#include "history/turns.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/measured_data.hpp"
 #include "scenario/text_file.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "history/branches.hpp"
+#include "history/turns.hpp"
 
 namespace monograin {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "history/branches.hpp"
+#include "history/turns.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/response.hpp"
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "figure/page.hpp"
-#include "history/branches.hpp"
+#include "history/turns.hpp"
 #include "history/table.hpp"
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/text_table.hpp"

@@ -11,7 +11,7 @@
 
 #include "catalogue.hpp"
 #include "engine/drive.hpp"
-#include "history/branches.hpp"
+#include "history/turns.hpp"
 #include "history/run.hpp"
 #include "scenario/numbers.hpp"
 #include "system/resolution.hpp"

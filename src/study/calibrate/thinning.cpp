@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "history/branches.hpp"
+#include "history/turns.hpp"
 
 namespace monograin {
 namespace {
