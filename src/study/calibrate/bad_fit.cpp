@@ -94,8 +94,8 @@ void scale_displacement(Calibration& calibration, double factor) {
   }
 }
 
-/// Adds the suspicions that another number of walls moves than the displacement is of. A factor of the force is none:
-/// it is one of modulus and yield stress.
+/// Adds the suspicions that another number of walls moves than the displacement is of. A wrong factor of the force
+/// cannot be found: modulus and yield stress absorb it.
 void add_numbers_of_walls(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
   const MeasuredQuantity& moved = calibration.machine_moves_x() ? calibration.x : calibration.y;
   if (!moved.observable.ends_with(".displacement")) return;

@@ -22,7 +22,7 @@ namespace monograin {
 struct TrialFit {
   double explained = 0.0;  ///< see explained_share; nan where there is no fit
   std::vector<double> parameters;
-  bool is_noise = false;  ///< no test says that the residuals are not independent
+  bool is_noise = false;  ///< the residuals pass the tests of independence, or are too few for them
 };
 using FitTrial = std::function<TrialFit(const Calibration&)>;
 

@@ -1,4 +1,6 @@
-/// Calibration: fit of a scenario's numbers to measured data, with their uncertainty.
+/// Calibration: fit of a scenario's numbers to measured data, with their uncertainty. The functions and classes are
+/// defined in calibration_data.cpp (data and free numbers), calibration_file.cpp (reading), calibration.cpp (fit),
+/// calibration_text.cpp (report) and calibration_files.cpp (files).
 #pragma once
 
 #include <algorithm>
@@ -161,8 +163,8 @@ struct CalibrationResult {
   }
 };
 
-/// Share of the data below which a fit is bad and causes a warning. The share is R^2 if the loss is linear and the
-/// weights are equal.
+/// Least share of the variation of y that a good fit explains; a fit below it causes a warning. The share is R^2 if the
+/// loss is linear and the weights are equal.
 inline constexpr double k_least_explained = 0.9;
 
 /// Largest size of a file of data [byte].

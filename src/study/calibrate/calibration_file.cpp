@@ -531,20 +531,21 @@ class CalibrationReader {
   /// @param column  with the deviations; null: the curve has their parts
   [[nodiscard]] std::vector<double> weights_by_noise(const ColumnSpec* column, const MeasuredData& measured,
                                                      const MeasuredQuantity& y, const MeasuredCurve& curve) {
-    const std::size_t before = faults_.size();
     double factor = 0.0;  // unit of the column, and scale of y
     if (column != nullptr) {
       MeasuredQuantity quantity{.unit = measured.columns[2].unit, .si = y.si};
-      factor = unit_factor(quantity, *column).value_or(0.0) * std::abs(curve.scales[1]);
+      const std::optional<double> unit = unit_factor(quantity, *column);
+      if (!unit) return std::vector<double>(y.values.size(), 1.0);
+      factor = *unit * std::abs(curve.scales[1]);
     }
     std::vector<double> weights;
     std::size_t found = 0;
-    for (std::size_t row = 0; row < y.values.size() && faults_.size() < before + k_most_zeros; ++row) {
+    for (std::size_t row = 0; row < y.values.size() && found < k_most_zeros; ++row) {
       const double deviation = column != nullptr
                                    ? factor * measured.columns[2].values[row]
                                    : std::hypot(curve.noise.absolute, curve.noise.relative * y.values[row]);
       weights.push_back(1.0 / deviation);
-      if (deviation > 0.0 || faults_.size() > before + found) continue;
+      if (deviation > 0.0) continue;
       ++found;
       faults_.add({curve.file, measured.lines[row], measured.columns[column != nullptr ? 2 : 1].at[row]},
                   column != nullptr ? "a standard deviation has to be above zero"
@@ -583,44 +584,6 @@ class CalibrationReader {
 };
 
 }  // namespace
-
-std::size_t Calibration::counted() const noexcept {
-  return static_cast<std::size_t>(std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }));
-}
-
-bool Calibration::knows_noise() const noexcept { return weighting == k_noise && loss.kind == Loss::linear; }
-
-Machine Calibration::machine_of(const MeasuredCurve& curve, std::span<const double> parameters) const {
-  Machine machine = curve.machine;
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    if (free[k].key.path == k_offset) machine.offset = parameters[k];
-    if (free[k].key.path == k_force_offset) machine.force_offset = parameters[k];
-    if (free[k].key.path == k_compliance) machine.compliance = parameters[k];
-  }
-  return machine;
-}
-
-bool FreeParameter::is_of_machine() const noexcept { return key.path.starts_with(k_data); }
-
-std::string FreeParameter::bounds_text() const {
-  return fmt::format("'{}' from {:.6g} to {:.6g}{}{}", key.path, lower / unit_factor, upper / unit_factor,
-                     unit.empty() ? "" : " ", unit);
-}
-
-bool Calibration::has_machine() const noexcept {
-  const auto has_own = [](const MeasuredCurve& curve) { return !curve.machine.adds_nothing(); };
-  return std::ranges::any_of(free, &FreeParameter::is_of_machine) || std::ranges::any_of(curves, has_own);
-}
-
-const MeasuredCurve& Calibration::curve_of(std::size_t row) const noexcept {
-  return *std::ranges::find_if(curves, [row](const MeasuredCurve& curve) { return row < curve.end; });
-}
-
-std::string data_names(const Calibration& calibration) {
-  std::vector<std::string> names;
-  for (const MeasuredCurve& curve : calibration.curves) names.push_back(fs::path(curve.file).filename().string());
-  return fmt::format("{}", fmt::join(names, ", "));
-}
 
 Calibration read_calibration(const fs::path& file) {
   return parse_calibration(read_named_text(file, "a calibration file"));

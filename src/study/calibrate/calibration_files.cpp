@@ -122,9 +122,42 @@ Json residual_tests_json(const CalibrationResult& result) {
           {"are_independent", tests.are_independent()}};
 }
 
+Json statistics_json(const Calibration& calibration, const CalibrationResult& result) {
+  const LeastSquaresSolution& solution = result.solution;
+  const Uncertainty& uncertainty = result.uncertainty;
+  return {{"points", result.points},
+          {"degrees_of_freedom", uncertainty.degrees_of_freedom},
+          {"level", uncertainty.level},
+          {"t_quantile", uncertainty.t_quantile},
+          {"standard_deviation", uncertainty.standard_deviation},
+          {"cost", solution.cost},
+          {"sum_of_squares", result.sum_of_squares},
+          {"rms", result.rms},
+          {"largest", result.largest},
+          {"largest_in_line", calibration.lines[result.largest_at]},
+          {"r_squared", result.r_squared},
+          {"explained", result.explained}};
+}
+
+/// How the fit was made.
+Json fit_json(const Calibration& calibration, const CalibrationResult& result) {
+  const LeastSquaresSolution& solution = result.solution;
+  return {{"x", {{"quantity", calibration.x.observable}, {"unit", calibration.x.si}}},
+          {"y", {{"quantity", calibration.y.observable}, {"unit", calibration.y.si}}},
+          {"weights", calibration.weighting},
+          {"noise", calibration.knows_noise() ? "known" : "estimated"},
+          {"loss", calibration::k_losses[static_cast<std::size_t>(calibration.loss.kind)]},
+          {"loss_scale", calibration.loss.kind == Loss::linear ? Json() : Json(calibration.loss.scale)},
+          {"has_converged", solution.has_converged},
+          {"evaluations", solution.evaluations},
+          {"failed_evaluations", solution.failures},
+          {"program_steps", result.program_steps},
+          {"minima", minima_json(result)},
+          {"procedures", procedures_json(result.procedures)}};
+}
+
 /// The content of calibration.json. Undefined numbers become null.
 Json to_json(const Calibration& calibration, const CalibrationResult& result) {
-  const LeastSquaresSolution& solution = result.solution;
   const Uncertainty& uncertainty = result.uncertainty;
   const std::size_t p = calibration.free.size();
   return {{"calibration", calibration.name},
@@ -141,37 +174,13 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
                                                                             uncertainty.standard_error(j));
                                         return has_both ? uncertainty.correlation(i, j) : k_nan;
                                       })},
-          {"statistics",
-           {{"points", result.points},
-            {"degrees_of_freedom", uncertainty.degrees_of_freedom},
-            {"level", uncertainty.level},
-            {"t_quantile", uncertainty.t_quantile},
-            {"standard_deviation", uncertainty.standard_deviation},
-            {"cost", solution.cost},
-            {"sum_of_squares", result.sum_of_squares},
-            {"rms", result.rms},
-            {"largest", result.largest},
-            {"largest_in_line", calibration.lines[result.largest_at]},
-            {"r_squared", result.r_squared},
-            {"explained", result.explained}}},
+          {"statistics", statistics_json(calibration, result)},
           {"intervals",
            {{"method", calibration::k_intervals[static_cast<std::size_t>(result.method)]},
             {"reason", result.method_reason},
             {"level", uncertainty.level}}},
           {"residual_tests", residual_tests_json(result)},
-          {"fit",
-           {{"x", {{"quantity", calibration.x.observable}, {"unit", calibration.x.si}}},
-            {"y", {{"quantity", calibration.y.observable}, {"unit", calibration.y.si}}},
-            {"weights", calibration.weighting},
-            {"noise", calibration.knows_noise() ? "known" : "estimated"},
-            {"loss", calibration::k_losses[static_cast<std::size_t>(calibration.loss.kind)]},
-            {"loss_scale", calibration.loss.kind == Loss::linear ? Json() : Json(calibration.loss.scale)},
-            {"has_converged", solution.has_converged},
-            {"evaluations", solution.evaluations},
-            {"failed_evaluations", solution.failures},
-            {"program_steps", result.program_steps},
-            {"minima", minima_json(result)},
-            {"procedures", procedures_json(result.procedures)}}},
+          {"fit", fit_json(calibration, result)},
           {"notes", result.notes},
           {"warnings", result.warnings},
           {"versions", {{"monograin", version()}, {"compiler", __VERSION__}}},

@@ -133,7 +133,7 @@ std::string meaning_of(const MeasuredQuantity& quantity, double scale) {
 }
 
 /// Curve of all loading branches, or of all unloading ones; nan between them breaks the line.
-figure::ChartSeries branches_of(const DataReport& report, bool is_loading) {
+figure::ChartSeries branch_series(const DataReport& report, bool is_loading) {
   using Style = figure::ChartSeries::Style;
   figure::ChartSeries series{
       .legend = is_loading ? "loading" : "unloading", .style = is_loading ? Style::solid : Style::dashed, .colour = 0};
@@ -350,7 +350,7 @@ figure::Chart data_chart(const std::vector<DataReport>& reports) {
   for (std::size_t c = 0; c < reports.size(); ++c) {
     const std::string suffix =
         has_several ? ": " + figure::verbatim_text(fs::path(reports[c].file).stem().string()) : std::string();
-    std::array<figure::ChartSeries, 3> series{branches_of(reports[c], true), branches_of(reports[c], false),
+    std::array<figure::ChartSeries, 3> series{branch_series(reports[c], true), branch_series(reports[c], false),
                                               turning_points_of(reports[c])};
     for (std::size_t k = 0; k < series.size(); ++k) {
       if (series[k].x.empty()) continue;

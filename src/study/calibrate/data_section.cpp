@@ -143,8 +143,8 @@ std::optional<ColumnSpec> noise_column_in(const Section& data) {
   const Section::Origin origin = data.table(k_noise, std::string(k_noise));
   const KeySpec::Kind kind = kind_of(*origin.table, "column", KeySpec::Kind::text);
   if (!origin.table->contains("column") || (kind != KeySpec::Kind::text && kind != KeySpec::Kind::integer)) return {};
-  FaultList reported_by_noise_in;
-  Reading reading{reported_by_noise_in};
+  FaultList ignored;  // noise_in() reads the section again, and reports its faults
+  Reading reading{ignored};
   const Keys keys = noise_keys(Dimension::none, Dimension::none, kind);
   const Section noise(reading, origin, keys);
   return ColumnSpec{.request = request_of(noise, "column", kind),

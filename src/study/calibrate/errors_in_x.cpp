@@ -17,7 +17,7 @@ ErrorsInX::ErrorsInX(const Calibration& calibration, const MeasuredCurve& curve,
       is_held_(path.point_of.size()),
       moved_(path.point_of.size()),
       slopes_(path.point_of.size()),
-      excesses_(path.point_of.size()) {
+      curvature_biases_(path.point_of.size()) {
   const std::vector<double> x = x_of(calibration, curve);
   if (x.size() < 2) {
     of_turns_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(x.size()), 0);
@@ -39,7 +39,7 @@ ErrorsInX::ErrorsInX(const Calibration& calibration, const MeasuredCurve& curve,
   of_turns_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(x.size()), static_cast<Eigen::Index>(turns_.size()));
 }
 
-void ErrorsInX::expand(std::size_t row, std::span<const double> y) {
+void ErrorsInX::set_slope_and_bias(std::size_t row, std::span<const double> y) {
   const std::size_t point = path_.point_of[row];
   const std::size_t branch = branch_of_[row];
   std::size_t before = point;
@@ -51,7 +51,7 @@ void ErrorsInX::expand(std::size_t row, std::span<const double> y) {
   const double ahead = x[after] - x[point];
   slopes_[row] = x[after] == x[before] ? 0.0 : (y[after] - y[before]) / (x[after] - x[before]);
   // Where the branch ends within the noise, x has no errors beyond the end.
-  excesses_[row] =
+  curvature_biases_[row] =
       std::min(std::abs(behind), std::abs(ahead)) < noise_
           ? 0.0
           : noise_ * noise_ * ((y[after] - y[point]) / ahead - (y[point] - y[before]) / behind) / (ahead + behind);
@@ -67,7 +67,7 @@ bool ErrorsInX::respond_with(std::span<const double> parameters, std::size_t poi
 
 void ErrorsInX::follow(const Response& response) {
   for (std::size_t row = 0; row < slopes_.size(); ++row) {
-    if (!is_held_[row]) expand(row, response.at_points());
+    if (!is_held_[row]) set_slope_and_bias(row, response.at_points());
   }
 }
 
@@ -78,7 +78,7 @@ void ErrorsInX::move_turns(std::span<const double> parameters, const Response& r
     const auto [end, error] = turns_[turn];
     auto column = of_turns_.col(static_cast<Eigen::Index>(turn));
     column.setZero();
-    for (const double side : {1.0, -1.0}) {
+    for (const double side : {1.0, -1.0}) {  // inwards only if the scenario cannot follow a turn farther out
       if (!respond_with(parameters, end, side * error, measured)) continue;
       for (std::size_t row = 0; row < slopes_.size(); ++row) {
         const std::size_t point = path_.point_of[row];

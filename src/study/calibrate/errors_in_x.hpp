@@ -20,7 +20,7 @@ class ErrorsInX {
   /// @param calibration  and `curve`, with noise of x, must outlive the errors
   ErrorsInX(const Calibration& calibration, const MeasuredCurve& curve, const DataPath& path);
 
-  /// Sets slopes and excesses. @param response  that has run along this path
+  /// Sets slopes and curvature biases. @param response  that has run along this path
   void follow(const Response& response);
   /// Sets the effects of turns, after follow(). @param response  that has run with these parameters along this path
   void move_turns(std::span<const double> parameters, const Response& response);
@@ -30,7 +30,7 @@ class ErrorsInX {
   [[nodiscard]] std::span<const double> slopes() const noexcept { return slopes_; }
   /// Mean of y over the noise of a row's own x, less y in the row: d2y/dx2 times half the variance of x. Zero in a hold
   /// and at the ends of branches.
-  [[nodiscard]] std::span<const double> excesses() const noexcept { return excesses_; }
+  [[nodiscard]] std::span<const double> curvature_biases() const noexcept { return curvature_biases_; }
   /// Change of the response in every row by an error of one standard deviation of each turn; zero for a turn that the
   /// scenario cannot follow if it is moved to either side.
   [[nodiscard]] const Eigen::MatrixXd& of_turns() const noexcept { return of_turns_; }
@@ -45,8 +45,8 @@ class ErrorsInX {
   [[nodiscard]] std::size_t beginning_of(std::size_t branch) const noexcept {
     return branch > 0 ? path_.ends[branch - 1] : 0;
   }
-  /// Sets slope and excess of a row.
-  void expand(std::size_t row, std::span<const double> y);
+  /// Sets slope and curvature bias of a row.
+  void set_slope_and_bias(std::size_t row, std::span<const double> y);
   /// Moves a turn by an error. @return false if the scenario cannot follow
   /// @param measured  y at the points of the path
   [[nodiscard]] bool respond_with(std::span<const double> parameters, std::size_t point, double error,
@@ -61,7 +61,7 @@ class ErrorsInX {
   std::vector<UncertainTurn> turns_;
   std::vector<double> moved_;  ///< response of every row with a moved turn
   std::vector<double> slopes_;
-  std::vector<double> excesses_;
+  std::vector<double> curvature_biases_;
   Eigen::MatrixXd of_turns_;
 };
 

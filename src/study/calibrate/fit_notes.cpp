@@ -196,33 +196,37 @@ void note_correlations(const Calibration& calibration, const CalibrationResult& 
   }
 }
 
-}  // namespace
-
-std::vector<std::string> notes_of(const Calibration& calibration, const CalibrationResult& result) {
-  using Bound = LeastSquaresSolution::Bound;
-  const LeastSquaresSolution& solution = result.solution;
-  Notes notes = calibration.notes;
-  const auto note = [&notes](std::string text) { notes.push_back(std::move(text)); };
+/// Notes parameters that the data do not determine, or that sit at a bound.
+void note_parameters(const Calibration& calibration, const CalibrationResult& result, Notes& notes) {
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     const FreeParameter& parameter = calibration.free[k];
     const std::string& path = parameter.key.path;
     if (!result.uncertainty.has_derivative[k]) {
-      note(
+      notes.push_back(
           fmt::format("no error and no interval of '{}': trial runs on both sides of the fit failed, so that no "
                       "derivative is known; the data may determine it all the same",
                       path));
     } else if (!result.uncertainty.is_determined[k]) {
-      note(
+      notes.push_back(
           fmt::format("the data do not determine '{}': other values of it, alone or together with other parameters, "
                       "fit as well",
                       path));
-    } else if (solution.bounds[k] != Bound::none) {
-      note(fmt::format("'{}' sits at its {} bound; its interval ends there", path,
-                       solution.bounds[k] == Bound::lower ? "lower" : "upper"));
+    } else if (result.solution.bounds[k] != LeastSquaresSolution::Bound::none) {
+      notes.push_back(fmt::format("'{}' sits at its {} bound; its interval ends there", path,
+                                  result.solution.bounds[k] == LeastSquaresSolution::Bound::lower ? "lower" : "upper"));
     } else if (result.uncertainty.half_width(k) > 0.5 * (parameter.upper - parameter.lower)) {
-      note(fmt::format("the data hardly determine '{}': its interval is wider than its bounds", path));
+      notes.push_back(fmt::format("the data hardly determine '{}': its interval is wider than its bounds", path));
     }
   }
+}
+
+}  // namespace
+
+std::vector<std::string> notes_of(const Calibration& calibration, const CalibrationResult& result) {
+  const LeastSquaresSolution& solution = result.solution;
+  Notes notes = calibration.notes;
+  const auto note = [&notes](std::string text) { notes.push_back(std::move(text)); };
+  note_parameters(calibration, result, notes);
   if (result.uncertainty.degrees_of_freedom == 0 && !calibration.knows_noise()) {
     note(
         fmt::format("{} parameters for {} points: the fit leaves nothing to estimate errors from; no errors and no "

@@ -13,10 +13,12 @@ namespace monograin {
 namespace {
 
 constexpr int k_most_runs = 80;
-constexpr double k_least_slope = 0.1;  // of the shown displacement over the particle's; 1 for a rigid machine
-constexpr double k_least_step = 1e3 * k_epsilon;  // of a secant, over the largest x
-constexpr double k_least_share = 10.0;  // of a secant's step over the last moves of the turns before it, which change
-                                        // the force as well
+// Least slope of a secant: shown displacement over that of the particle, 1 for a rigid machine.
+constexpr double k_least_slope = 0.1;
+// Least step of a secant, over the largest x: the slope then has three digits.
+constexpr double k_least_step = 1e3 * k_epsilon;
+// Least step of a secant, over the last moves of the turns before the point, which change the force as well.
+constexpr double k_least_share = 10.0;
 
 /// The last trials of one displacement that showed too little and too much.
 class Bracket {
@@ -51,9 +53,10 @@ void keep_order(std::span<const double> x, std::vector<double>& particle) {
   }
 }
 
-/// Searches for the displacements of the particle at which the machine shows x: by secants and, where these do not
-/// halve the error in each run, by halving brackets. The force at a point depends on the turns before it, too: as long
-/// as these move, trials of the point do not compare.
+/// Searches for the displacements of the particle at which the machine shows x. That is Dekker's method for all points
+/// at once, since each run gives the forces at all of them: a secant step or, where these do not halve the error in
+/// each run, the middle of the bracket. The force at a point depends on the turns before it, too: as long as these
+/// move, trials of the point do not compare.
 class SeriesSearch {
  public:
   SeriesSearch(const Machine& machine, std::span<const double> x, double tolerance)

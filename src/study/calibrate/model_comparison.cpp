@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "figure/page.hpp"
-#include "history/turns.hpp"
 #include "history/table.hpp"
+#include "history/turns.hpp"
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/text_table.hpp"
 #include "system/resolution.hpp"

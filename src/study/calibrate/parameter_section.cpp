@@ -118,6 +118,7 @@ std::optional<RefusedNumber> refused(Reading& reading, const Section& free, cons
 }
 
 /// Reports numbers that the scenario takes nowhere: neither alone nor with all others at their bounds or in the middle.
+/// Only if a number is refused, this reads the scenario up to 2^n + 1 times for n numbers; n <= k_most_parameters.
 void report_refused(Reading& reading, const Section& free, const ScenarioText& scenario,
                     const std::vector<FreeParameter>& parameters, const std::vector<RefusedNumber>& refused_numbers) {
   if (refused_numbers.empty()) return;

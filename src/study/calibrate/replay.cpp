@@ -11,8 +11,8 @@
 
 #include "catalogue.hpp"
 #include "engine/drive.hpp"
-#include "history/turns.hpp"
 #include "history/run.hpp"
+#include "history/turns.hpp"
 #include "scenario/numbers.hpp"
 #include "system/resolution.hpp"
 
@@ -189,6 +189,7 @@ DataProgram program_along(const DataPath& path, std::span<const double> values, 
     for (; first <= end; ++first) {
       if (!is_same(values[first], passed)) {
         passed = values[first];
+        // The target differs from `at`: rows of a branch without a way to go are the same as its beginning.
         program.times.push_back(steps_before + (passed - at) / (target - at));
       }
       program.instants.push_back(program.times.size());

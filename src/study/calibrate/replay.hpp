@@ -13,8 +13,8 @@
 
 namespace monograin {
 
-/// The path on which data lead a scenario: points between which x rises or falls. Noise turns nothing: the rows between
-/// two turning_points() are passed in rising or falling order, whatever their order in the data, and x turns at
+/// The path on which data lead a scenario: points between which x rises or falls. Noise does not make turns: the rows
+/// between two turning_points() are passed in rising or falling order, whatever their order in the data, and x turns at
 /// turns_of(). Rows of a hold lie at the turn, and so do those that noise puts beyond it.
 struct DataPath {
   std::vector<double> x;              ///< of the points, in the order in which they are passed

@@ -25,7 +25,8 @@ inline constexpr double k_direct_noise = 1e-13;
 class Response {
  public:
   /// @param path  of x
-  /// @param y     measured values at the path's points, about
+  /// @param y     means of the measured rows at each point of the path: where the search for the particle's
+  ///              displacements in series with a machine starts
   Response(const Calibration& calibration, const MeasuredCurve& curve, DataPath path, std::vector<double> y);
 
   /// @return true if there is a response
@@ -49,7 +50,7 @@ class Response {
   const Calibration& calibration_;
   const MeasuredCurve& curve_;
   Replay replay_;
-  std::vector<double> measured_;  ///< y at the points of the path, about
+  std::vector<double> measured_;  ///< means of the rows at each point of the path
   double noise_;                  ///< relative error of a response
   std::vector<double> particle_;  ///< displacements at the points; empty if neither x nor y is a displacement
   std::vector<double> response_;  ///< at the points
