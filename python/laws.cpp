@@ -349,8 +349,8 @@ Elementwise mdr_pull_off(const std::string& quantity, const std::string& profile
         require_positive({{"modulus", modulus}, {"radius", r}, {"surface_energy", energy}});
         return or_nan([&] {
           const mdr::Indenter indenter = mdr::elastic_indenter(shape, r);
-          const double a = mdr::critical_radius(indenter, modulus, energy, prescribed);
-          return quantity == "force" ? mdr::peel_state(indenter, modulus, energy, a).force : a;
+          const double a = mdr::critical_radius(indenter, {modulus, energy}, prescribed);
+          return quantity == "force" ? mdr::peel_state(indenter, {modulus, energy}, a).force : a;
         });
       },
       composite_modulus, radius, surface_energy);
@@ -373,7 +373,7 @@ py::tuple mdr_peel_curve(const Numbers& radii, const Numbers& heights, double co
   const Control controlled = control_named(control);
   const mdr::RelaxedProfile profile(list_of(radii), list_of(heights));
   const std::vector<mdr::PeelState> states = run_interruptibly(
-      [&](const auto&) { return mdr::peel_curve(profile, composite_modulus, surface_energy, controlled, count); });
+      [&](const auto&) { return mdr::peel_curve(profile, {composite_modulus, surface_energy}, controlled, count); });
   const auto column = [&](double mdr::PeelState::*value) {
     Array array(static_cast<py::ssize_t>(states.size()));
     std::ranges::transform(states, array.mutable_data(), value);

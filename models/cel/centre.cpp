@@ -8,7 +8,8 @@
 namespace monograin::cel {
 
 Centre::Centre(std::span<const ContactClass> classes, bool is_free) : lines_(classes, is_free), shares_(lines_.size()) {
-  for (std::size_t i = 0; i < classes.size(); ++i) weights_.push_back(classes[i].multiplicity() * lines_.along(i));
+  for (std::size_t i = 0; i < classes.size(); ++i)
+    weights_.push_back(classes[i].multiplicity() * lines_.share_on_line(i));
   choose_balance(std::vector<double>(classes.size()));
 }
 
@@ -22,7 +23,7 @@ void Centre::choose_balance(std::span<const double> forces) {
     return largest;
   });
   // Keeps the orientation of the basis, because the sign of the equations' determinant says whether a state is stable.
-  const Eigen::Index n = lines_.dimension();
+  const Eigen::Index n = lines_.free_directions();
   if (balance_.topLeftCorner(n, n).determinant() < 0.0) balance_.col(n - 1) *= -1.0;
   for (std::size_t line = 0; line < lines_.size(); ++line) shares_[line] = lines_.components(balance_, line);
 }
@@ -39,10 +40,10 @@ void Centre::follow(double xi, std::span<const std::optional<double>> speeds) {
     return sum;
   };
   const auto stiffness = [&](std::size_t line) {
-    return sum_along(line, [&](std::size_t i) { return lines_.along(i); });
+    return sum_along(line, [&](std::size_t i) { return lines_.share_on_line(i); });
   };
   const auto force = [&](std::size_t line) { return sum_along(line, [&](std::size_t i) { return *speeds[i]; }); };
-  velocity_ = lines_.step(lines_.stiffest_directions(stiffness), stiffness, force);
+  velocity_ = lines_.displacement_that_balances(lines_.stiffest_directions(stiffness), stiffness, force);
 }
 
 Eigen::Vector3d Centre::net_force(double xi, const Eigen::Vector3d& x, std::span<const double> forces) const {

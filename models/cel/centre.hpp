@@ -20,7 +20,7 @@ class Centre {
   Centre(std::span<const ContactClass> classes, bool is_free);
 
   /// Number of free directions.
-  [[nodiscard]] std::size_t directions() const noexcept { return static_cast<std::size_t>(lines_.dimension()); }
+  [[nodiscard]] std::size_t directions() const noexcept { return static_cast<std::size_t>(lines_.free_directions()); }
   [[nodiscard]] const contacts::CentreLines& lines() const noexcept { return lines_; }
 
   /// Chooses the directions of the equations (E): along the line of the largest forces, then across it, where the

@@ -78,7 +78,7 @@ std::optional<std::vector<std::size_t>> Particle::leave_walls(std::span<double> 
   Eigen::VectorXd distances(left.size());
   for (std::size_t k = 0; k < left.size(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
-    arms.row(row) = centre.lines().arm(left[k]).head(static_cast<Eigen::Index>(layout_.directions)).transpose();
+    arms.row(row) = centre.lines().mean_normal(left[k]).head(static_cast<Eigen::Index>(layout_.directions)).transpose();
     distances[row] = -classes[left[k]].contact.u - gap;
   }
   const Eigen::VectorXd move = arms.completeOrthogonalDecomposition().solve(distances);

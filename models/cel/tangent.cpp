@@ -131,7 +131,8 @@ void Tangent::add_kinematics(const Particle& p, std::size_t i) {
   add(p, i, c.contact.u_by, 1.0, row);
   row[p.layout().dent(i)] += c.dent.h_zeta;
   row[Lam_] += c.advance.c_l * l_by_flow_[i];
-  for (std::size_t k = 0; k < p.layout().directions; ++k) row[p.layout().centre(k)] = -p.centre.lines().arm(i)[k];
+  for (std::size_t k = 0; k < p.layout().directions; ++k)
+    row[p.layout().centre(k)] = -p.centre.lines().mean_normal(i)[k];
 }
 
 /// Adds the derivatives of an equation (E).

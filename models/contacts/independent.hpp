@@ -351,7 +351,7 @@ class IndependentContacts final : public HybridSystem {
   }
   /// By how much a free centre has moved towards the walls of a class.
   [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const {
-    return centre_ ? centre_->carried(i, y) : 0.0;
+    return centre_ ? centre_->approach_by_centre(i, y) : 0.0;
   }
   /// True if touching is an event; it is none for a wall that touches the fresh particle from the start.
   [[nodiscard]] bool is_seen(std::size_t i) const noexcept { return has_begun_ || classes_[i].gap > 0.0; }

@@ -10,11 +10,11 @@
 
 namespace monograin::contacts {
 
-/// Coordinate of a contact at the first trial instant ahead at which it is clearly open or closed. 0 if it is so at
-/// none before the step ends; no value if states end before, so that the run will stop.
+/// Finds on which side a contact is at the first trial instant ahead at which it is clearly open or closed.
 /// @param xi     step coordinate from which on the contact is watched
 /// @param touch  least magnitude that puts the contact on a side
 /// @param at     step coordinate -> coordinate of the contact; throws std::domain_error where there is no state
+/// @return its coordinate there; 0 if it stays undecided to the end of the step; none if no state exists ahead
 template <class At>
 [[nodiscard]] std::optional<double> side_ahead(double xi, double touch, At&& at) {
   double later = xi;

@@ -53,41 +53,50 @@ double free_force_at(const Indenter& indenter, double composite_modulus, const P
          phi_at(angle_of(edge), edge.share, edge.cosine);
 }
 
-PeelState peel_state_at(const Indenter& indenter, double composite_modulus, double surface_energy,
-                        const ProfileEdge& edge) noexcept {
-  const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
+PeelState peel_state_at(const Indenter& indenter, const Adhesion& adhesion, const ProfileEdge& edge) noexcept {
+  const double stretch = critical_stretch(adhesion, edge.radius);
   return {.contact_radius = edge.radius,
           .displacement_1d = height_at(indenter, edge) - stretch,
-          .force = free_force_at(indenter, composite_modulus, edge) - 2.0 * composite_modulus * edge.radius * stretch};
+          .force = free_force_at(indenter, adhesion.composite_modulus, edge) -
+                   2.0 * adhesion.composite_modulus * edge.radius * stretch};
 }
 
-/// Slope of an edge's equilibrium, (g' - xi Dl') with g' and Dl' over the cosine on the ellipse, where g' is unbounded.
-double slope(const Indenter& indenter, double stretch, double xi, const ProfileEdge& edge) noexcept {
+/// Slope of an edge's equilibrium, g' - control_factor Dl', times the cosine on the ellipse, where g' is unbounded.
+double slope(const Indenter& indenter, double stretch, double control_factor, const ProfileEdge& edge) noexcept {
   const double by_height = 0.5 * indenter.height / indenter.half_width * edge.share;
-  return by_height - xi * stretch / (2.0 * edge.radius) * edge.cosine;
+  return by_height - control_factor * stretch / (2.0 * edge.radius) * edge.cosine;
 }
 
-/// Slope of an edge's equilibrium under displacement control (xi = 1). It is zero at pull-off, and no less here than
-/// its round-off.
+/// Slope of an edge's equilibrium under displacement control. It is zero at pull-off, and no less here than its
+/// round-off.
 double slope_off_pull_off(const Indenter& indenter, double stretch, const ProfileEdge& edge) noexcept {
   const double least = k_root_of_round_off * indenter.height / indenter.half_width;
-  return std::max(least, slope(indenter, stretch, 1.0, edge));
+  return std::max(least, slope(indenter, stretch, control_factor(Control::displacement), edge));
 }
+
+/// Contact radii between which an edge is searched.
+struct EdgeRange {
+  double from = 0.0;
+  double down_to = 0.0;
+};
 
 /// Newton's method for the edge at which an excess is zero. The excess is a convex increasing function of the rise, so
 /// the iteration from above comes down to the root without passing it.
-/// @param xi      1: the excess is one of displacement; 3: one of force, over 2 E a
-/// @param excess  (edge, stretch) -> excess
+/// @param range           contact radii at which the search begins, and below which it does not go
+/// @param control_factor  control_factor() of displacement if the excess is a displacement; that of force if it is a
+///                        force over 2 E* a
+/// @param excess          (edge, stretch) -> excess
 template <class Excess>
-ProfileEdge descend(const Indenter& indenter, double composite_modulus, double surface_energy, double from,
-                    double down_to, double xi, Excess&& excess) noexcept {
-  const double unit_stretch = critical_stretch(composite_modulus, surface_energy, indenter.half_width);
+ProfileEdge descend(const Indenter& indenter, const Adhesion& adhesion, const EdgeRange& range, double control_factor,
+                    Excess&& excess) noexcept {
+  const double unit_stretch = critical_stretch(adhesion, indenter.half_width);
   const double most = indenter.is_parabola() ? k_infinity : 1.0;
-  const double least = edge_at(indenter, down_to).rise;
-  ProfileEdge edge = edge_at_rise(indenter, std::min(edge_at(indenter, from).rise, most));
+  const double least = edge_at(indenter, range.down_to).rise;
+  ProfileEdge edge = edge_at_rise(indenter, std::min(edge_at(indenter, range.from).rise, most));
   for (int iteration = 0; iteration < k_most_corrections; ++iteration) {
     const double stretch = unit_stretch * std::sqrt(edge.share);
-    const double by_rise = 0.5 * indenter.height - 0.5 * xi * stretch * edge.cosine / (edge.share * edge.share);
+    const double by_rise =
+        0.5 * indenter.height - 0.5 * control_factor * stretch * edge.cosine / (edge.share * edge.share);
     if (!(by_rise > 0.0)) break;
     const double next = std::clamp(edge.rise - excess(edge, stretch) / by_rise, least, most);
     // Near pull-off, where the root is double, round-off over a tiny slope would move the edge up again.
@@ -98,7 +107,7 @@ ProfileEdge descend(const Indenter& indenter, double composite_modulus, double s
 }
 
 /// Change of the relaxed profile's height at a fixed radius with the indenter; on the ellipse times the cosine there.
-double height_change(const Indenter& indenter, const Frame::Change& change, const ProfileEdge& edge) noexcept {
+double height_change(const Indenter& indenter, const Image::Change& change, const ProfileEdge& edge) noexcept {
   const double height = height_at(indenter, edge);
   if (indenter.is_parabola()) return height * (change.height - 2.0 * change.half_width);
   return change.height * height * edge.cosine - 0.5 * indenter.height * change.half_width * edge.share * edge.share;
@@ -124,30 +133,30 @@ Below below(const Indenter& indenter, const ProfileEdge& edge) noexcept {
 
 /// Contact whose springs stand up to a given edge, with derivatives at a fixed edge.
 /// @param lift  delta_1D - g(a), displacement of the springs at the edge
-Contact contact_below(const Frame& frame, double composite_modulus, const ProfileEdge& edge, double lift) noexcept {
+Contact contact_below(const Image& image, double composite_modulus, const ProfileEdge& edge, double lift) noexcept {
   const double a = edge.radius;
-  const Below springs = below(frame.indenter, edge);
-  const auto changed = [&](const Frame::Change& change) {
+  const Below springs = below(image.indenter, edge);
+  const auto changed = [&](const Image::Change& change) {
     return 2.0 * composite_modulus *
-           (change.displacement * a - change.height * springs.area + change.half_width * springs.by_width);
+           (change.displacement_1d * a - change.height * springs.area + change.half_width * springs.by_width);
   };
   return {.contact_radius = a,
           // The force without adhesion is 2 E* times the same integral.
           .force = 2.0 * composite_modulus * (springs.by_width + a * lift),
-          .by_overlap = 2.0 * composite_modulus * a * frame.by_overlap,
-          .by_radius = changed(frame.by_radius),
-          .by_overlap_max = changed(frame.by_overlap_max)};
+          .by_overlap = 2.0 * composite_modulus * a * image.by_overlap,
+          .by_radius = changed(image.by_radius),
+          .by_overlap_max = changed(image.by_overlap_max)};
 }
 
 /// Edge in equilibrium at a displacement above the critical one.
-ProfileEdge peeling_edge(const Indenter& indenter, double composite_modulus, double surface_energy,
-                         double critical_radius, double displacement_1d) noexcept {
+ProfileEdge peeling_edge(const Indenter& indenter, const Adhesion& adhesion, double critical_radius,
+                         double displacement_1d) noexcept {
   // Beyond this radius half of the tip's parabola alone exceeds the stretch, and the other half delta_1D.
   const double curvature = indenter.tip_curvature();
-  const double stretch = critical_stretch(composite_modulus, surface_energy, 1.0);
+  const double stretch = critical_stretch(adhesion, 1.0);
   const double from = std::max(std::cbrt(4.0 * stretch * stretch / (curvature * curvature)),
                                std::sqrt(2.0 * std::max(0.0, displacement_1d) / curvature));
-  return descend(indenter, composite_modulus, surface_energy, from, critical_radius, 1.0,
+  return descend(indenter, adhesion, {from, critical_radius}, control_factor(Control::displacement),
                  [&](const ProfileEdge& e, double s) { return height_at(indenter, e) - s - displacement_1d; });
 }
 
@@ -178,15 +187,16 @@ double free_force(const Indenter& indenter, double composite_modulus, double a) 
   return free_force_at(indenter, composite_modulus, edge_at(indenter, a));
 }
 
-double critical_stretch(double composite_modulus, double surface_energy, double a) noexcept {
-  return std::sqrt(2.0 * pi * a * surface_energy / composite_modulus);
+double critical_stretch(const Adhesion& adhesion, double a) noexcept {
+  return std::sqrt(2.0 * pi * a * adhesion.surface_energy / adhesion.composite_modulus);
 }
 
-double critical_radius(const Indenter& indenter, double composite_modulus, double surface_energy, Control control) {
-  const double xi = control == Control::force ? 3.0 : 1.0;
+double critical_radius(const Indenter& indenter, const Adhesion& adhesion, Control control) {
+  const double factor = control_factor(control);
   const double b = indenter.half_width;
   const double flatness = 2.0 * b / indenter.height;
-  const double k = 0.5 * xi * xi * pi * surface_energy / composite_modulus * flatness * flatness;
+  const double k =
+      0.5 * factor * factor * pi * adhesion.surface_energy / adhesion.composite_modulus * flatness * flatness;
   const double parabola = std::cbrt(k * b * b);
   if (indenter.is_parabola()) return parabola;
   // a^3 + k a^2 - k b^2 = 0: convex, with one positive root, below both of these.
@@ -199,128 +209,128 @@ double critical_radius(const Indenter& indenter, double composite_modulus, doubl
   return a;
 }
 
-PeelState peel_state(const Indenter& indenter, double composite_modulus, double surface_energy, double a) noexcept {
-  return peel_state_at(indenter, composite_modulus, surface_energy, edge_at(indenter, a));
+PeelState peel_state(const Indenter& indenter, const Adhesion& adhesion, double a) noexcept {
+  return peel_state_at(indenter, adhesion, edge_at(indenter, a));
 }
 
-PeelState peel_at_displacement(const Indenter& indenter, double composite_modulus, double surface_energy,
-                               double critical_radius, double displacement_1d) {
-  const PeelState critical = peel_state(indenter, composite_modulus, surface_energy, critical_radius);
+PeelState peel_at_displacement(const Indenter& indenter, const Adhesion& adhesion, double critical_radius,
+                               double displacement_1d) {
+  const PeelState critical = peel_state(indenter, adhesion, critical_radius);
   if (displacement_1d <= critical.displacement_1d) return critical;
-  return peel_state_at(indenter, composite_modulus, surface_energy,
-                       peeling_edge(indenter, composite_modulus, surface_energy, critical_radius, displacement_1d));
+  return peel_state_at(indenter, adhesion, peeling_edge(indenter, adhesion, critical_radius, displacement_1d));
 }
 
-PeelState peel_at_force(const Indenter& indenter, double composite_modulus, double surface_energy,
-                        double critical_radius, double force) {
-  const PeelState critical = peel_state(indenter, composite_modulus, surface_energy, critical_radius);
+PeelState peel_at_force(const Indenter& indenter, const Adhesion& adhesion, double critical_radius, double force) {
+  const PeelState critical = peel_state(indenter, adhesion, critical_radius);
   if (force <= critical.force) return critical;
-  const double cubic = 4.0 / 3.0 * composite_modulus * indenter.tip_curvature();
-  const double stretch = 2.0 * composite_modulus * critical_stretch(composite_modulus, surface_energy, 1.0);
+  const double cubic = 4.0 / 3.0 * adhesion.composite_modulus * indenter.tip_curvature();
+  const double stretch = 2.0 * adhesion.composite_modulus * critical_stretch(adhesion, 1.0);
   const double from =
       std::max(std::cbrt(4.0 * stretch * stretch / (cubic * cubic)), std::cbrt(2.0 * std::max(0.0, force) / cubic));
-  const ProfileEdge edge = descend(
-      indenter, composite_modulus, surface_energy, from, critical_radius, 3.0, [&](const ProfileEdge& e, double s) {
-        return (free_force_at(indenter, composite_modulus, e) - force) / (2.0 * composite_modulus * e.radius) - s;
-      });
-  return peel_state_at(indenter, composite_modulus, surface_energy, edge);
+  const ProfileEdge edge = descend(indenter, adhesion, {from, critical_radius}, control_factor(Control::force),
+                                   [&](const ProfileEdge& e, double s) {
+                                     return (free_force_at(indenter, adhesion.composite_modulus, e) - force) /
+                                                (2.0 * adhesion.composite_modulus * e.radius) -
+                                            s;
+                                   });
+  return peel_state_at(indenter, adhesion, edge);
 }
 
-Frame elastic_frame(ElasticProfile profile, double radius, double overlap) noexcept {
+Image elastic_image(ElasticProfile profile, double radius, double overlap) noexcept {
   return {.indenter = elastic_indenter(profile, radius),
-          .displacement = overlap,
+          .displacement_1d = overlap,
           .by_overlap = 1.0,
           .by_radius = {0.0, 1.0 / radius, 1.0 / radius}};
 }
 
-Frame unloading_frame(const UnloadingShape& shape, double overlap) noexcept {
+Image unloading_image(const UnloadingShape& shape, double overlap) noexcept {
   const double u = unloading_fraction(shape, overlap);
   const double opening = 1.0 / (1.0 - shape.rho);
   const auto change = [&](double pressure_x, double contact_radius_x, double rho_x, double overlap_max_x) {
     const double height_x = pressure_x + contact_radius_x;
-    return Frame::Change{
-        .displacement = 0.5 * shape.height * (height_x - u * rho_x * opening) - overlap_max_x * opening,
+    return Image::Change{
+        .displacement_1d = 0.5 * shape.height * (height_x - u * rho_x * opening) - overlap_max_x * opening,
         .height = height_x,
         .half_width = contact_radius_x};
   };
-  return {.indenter = unloading_indenter(shape),
-          .displacement = 0.5 * shape.height * (1.0 - u),
-          .by_overlap = opening,
-          .by_radius = change(shape.pressure_by_radius, shape.contact_radius_by_radius, shape.rho_by_radius, 0.0),
-          .by_overlap_max = change(shape.pressure_by_max, shape.contact_radius_by_max, shape.rho_by_max, 1.0)};
+  return {
+      .indenter = unloading_indenter(shape),
+      .displacement_1d = 0.5 * shape.height * (1.0 - u),
+      .by_overlap = opening,
+      .by_radius = change(shape.log_pressure_by_radius, shape.log_contact_radius_by_radius, shape.rho_by_radius, 0.0),
+      .by_overlap_max = change(shape.log_pressure_by_max, shape.log_contact_radius_by_max, shape.rho_by_max, 1.0)};
 }
 
 double overlap_at(const UnloadingShape& shape, double displacement_1d) noexcept {
   return shape.overlap_max - shape.recovery * (1.0 - 2.0 * displacement_1d / shape.height);
 }
 
-Contact sticking_contact(const Frame& frame, double composite_modulus, double a) noexcept {
-  const ProfileEdge edge = edge_at(frame.indenter, a);
-  return contact_below(frame, composite_modulus, edge, frame.displacement - height_at(frame.indenter, edge));
+Contact sticking_contact(const Image& image, double composite_modulus, double a) noexcept {
+  const ProfileEdge edge = edge_at(image.indenter, a);
+  return contact_below(image, composite_modulus, edge, image.displacement_1d - height_at(image.indenter, edge));
 }
 
-Contact peeling_contact(const Frame& frame, double composite_modulus, double surface_energy, double critical_radius) {
-  const Indenter& indenter = frame.indenter;
+Contact peeling_contact(const Image& image, const Adhesion& adhesion, double critical_radius) {
+  const Indenter& indenter = image.indenter;
   ProfileEdge edge = edge_at(indenter, critical_radius);
-  const double critical_displacement =
-      height_at(indenter, edge) - critical_stretch(composite_modulus, surface_energy, critical_radius);
-  if (frame.displacement > critical_displacement) {
-    edge = peeling_edge(indenter, composite_modulus, surface_energy, critical_radius, frame.displacement);
+  const double critical_displacement = height_at(indenter, edge) - critical_stretch(adhesion, critical_radius);
+  if (image.displacement_1d > critical_displacement) {
+    edge = peeling_edge(indenter, adhesion, critical_radius, image.displacement_1d);
   }
-  const double stretch = critical_stretch(composite_modulus, surface_energy, edge.radius);
+  const double stretch = critical_stretch(adhesion, edge.radius);
   // The edge of an ellipse is widest at its end. Beyond the equilibrium there, where trials may lead, the contact has
   // an edge that sticks, so that the trial leads back.
   const bool is_widest = !indenter.is_parabola() && edge.share >= 1.0;
-  if (is_widest && frame.displacement > height_at(indenter, edge) - stretch) {
-    return sticking_contact(frame, composite_modulus, edge.radius);
+  if (is_widest && image.displacement_1d > height_at(indenter, edge) - stretch) {
+    return sticking_contact(image, adhesion.composite_modulus, edge.radius);
   }
-  Contact contact = contact_below(frame, composite_modulus, edge, -stretch);
+  Contact contact = contact_below(image, adhesion.composite_modulus, edge, -stretch);
   // The edge follows: da = d(delta_1D - g)/(g' - Dl'). At pull-off that is unbounded; it is kept finite here.
-  const double follow = 2.0 * composite_modulus * stretch / slope_off_pull_off(indenter, stretch, edge);
-  const auto followed = [&](const Frame::Change& change) {
-    return follow * (change.displacement * edge.cosine - height_change(indenter, change, edge));
+  const double follow = 2.0 * adhesion.composite_modulus * stretch / slope_off_pull_off(indenter, stretch, edge);
+  const auto followed = [&](const Image::Change& change) {
+    return follow * (change.displacement_1d * edge.cosine - height_change(indenter, change, edge));
   };
-  contact.by_overlap -= follow * edge.cosine * frame.by_overlap;
-  contact.by_radius -= followed(frame.by_radius);
-  contact.by_overlap_max -= followed(frame.by_overlap_max);
+  contact.by_overlap -= follow * edge.cosine * image.by_overlap;
+  contact.by_radius -= followed(image.by_radius);
+  contact.by_overlap_max -= followed(image.by_overlap_max);
   return contact;
 }
 
-double peeling_softening(const Frame& frame, double composite_modulus, double surface_energy, double a) noexcept {
-  const Indenter& indenter = frame.indenter;
+double peeling_softening(const Image& image, const Adhesion& adhesion, double a) noexcept {
+  const Indenter& indenter = image.indenter;
   const ProfileEdge edge = edge_at(indenter, a);
-  const double stretch = critical_stretch(composite_modulus, surface_energy, a);
+  const double stretch = critical_stretch(adhesion, a);
   const double slope = slope_off_pull_off(indenter, stretch, edge);
-  // Differentiates the stiffness 2 E (a - Dl cos/slope) by delta_1D. The radius changes by cos/slope; the cosine of the
-  // ellipse changes by a rate that is finite at the end of the ellipse.
-  const double by_radius = edge.cosine / slope;
-  const double of_cosine = indenter.is_parabola() ? 0.0 : -edge.share / (indenter.half_width * slope);
-  const double of_stretch = 0.5 * stretch / a * by_radius;
-  const double of_height = 0.5 * indenter.height / (indenter.half_width * indenter.half_width) * by_radius;
-  const double of_slope = of_height + 0.5 * of_stretch * edge.cosine / a - 0.5 * stretch / a * of_cosine;
-  const double of_share = of_stretch * edge.cosine + stretch * (of_cosine - edge.cosine * of_slope / slope);
-  return 2.0 * composite_modulus * (by_radius - of_share / slope) * frame.by_overlap * frame.by_overlap;
+  // d2F/d(delta)2 = 2 E* d(a - Dl cos/slope)/d(delta_1D) (d(delta_1D)/d(delta))^2, with da/d(delta_1D) = cos/slope. The
+  // rates below are derivatives by delta_1D; that of the cosine is finite at the end of the ellipse.
+  const double radius_rate = edge.cosine / slope;
+  const double cosine_rate = indenter.is_parabola() ? 0.0 : -edge.share / (indenter.half_width * slope);
+  const double stretch_rate = 0.5 * stretch / a * radius_rate;
+  const double height_slope_rate = 0.5 * indenter.height / (indenter.half_width * indenter.half_width) * radius_rate;
+  const double slope_rate = height_slope_rate + 0.5 * stretch_rate * edge.cosine / a - 0.5 * stretch / a * cosine_rate;
+  const double share_rate = stretch_rate * edge.cosine + stretch * (cosine_rate - edge.cosine * slope_rate / slope);
+  return 2.0 * adhesion.composite_modulus * (radius_rate - share_rate / slope) * image.by_overlap * image.by_overlap;
 }
 
-EdgePress edge_press(const Frame& frame, const Frame::Change& by_radius, double a) noexcept {
-  const ProfileEdge edge = edge_at(frame.indenter, a);
-  return {.by_overlap = frame.by_overlap * edge.cosine,
-          .by_radius = by_radius.displacement * edge.cosine - height_change(frame.indenter, by_radius, edge)};
+EdgePress edge_press(const Image& image, const Image::Change& by_radius, double a) noexcept {
+  const ProfileEdge edge = edge_at(image.indenter, a);
+  return {.by_overlap = image.by_overlap * edge.cosine,
+          .by_radius = by_radius.displacement_1d * edge.cosine - height_change(image.indenter, by_radius, edge)};
 }
 
-double adhesive_energy(const Frame& frame, double composite_modulus, double surface_energy, double a) noexcept {
-  const Indenter& indenter = frame.indenter;
+double adhesive_energy(const Image& image, const Adhesion& adhesion, double a) noexcept {
+  const Indenter& indenter = image.indenter;
   const ProfileEdge edge = edge_at(indenter, a);
-  const double w = frame.displacement - height_at(indenter, edge);
+  const double w = image.displacement_1d - height_at(indenter, edge);
   const double curvature = indenter.tip_curvature();
   // Energy of the springs without adhesion, plus what the further displacement w of all of them adds.
-  const double free_energy =
-      indenter.is_parabola()
-          ? 8.0 / 15.0 * composite_modulus * curvature * curvature * a * a * a * a * a
-          : 0.25 * composite_modulus * indenter.height * indenter.height * indenter.half_width * psi(angle_of(edge));
-  const double springs =
-      free_energy + w * (free_force_at(indenter, composite_modulus, edge) + composite_modulus * a * w);
-  return (springs - pi * a * a * surface_energy) / frame.by_overlap;
+  const double free_energy = indenter.is_parabola()
+                                 ? 8.0 / 15.0 * adhesion.composite_modulus * curvature * curvature * a * a * a * a * a
+                                 : 0.25 * adhesion.composite_modulus * indenter.height * indenter.height *
+                                       indenter.half_width * psi(angle_of(edge));
+  const double springs = free_energy + w * (free_force_at(indenter, adhesion.composite_modulus, edge) +
+                                            adhesion.composite_modulus * a * w);
+  return (springs - pi * a * a * adhesion.surface_energy) / image.by_overlap;
 }
 
 }  // namespace monograin::mdr

@@ -39,7 +39,7 @@ Material run_material(const FlattenedContact& contact) {
 
 std::size_t classify(const FlattenedContact& contact, double modulus, double yield_stress, Control control) {
   // In units of dg and R0.
-  const double critical = critical_radius(flattened_indenter(contact), modulus, 1.0, control);
+  const double critical = critical_radius(flattened_indenter(contact), {modulus, 1.0}, control);
   return static_cast<std::size_t>(
       adhesion_validity(critical, flattened_peak_radius(contact), plastic_zone_size(modulus, 1.0, yield_stress)));
 }

@@ -21,7 +21,7 @@ bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept {
 
 double VolumeBalance::volume_ratio() const noexcept {
   // The volume is smallest at w = 1/4; fixed steps may end beyond that.
-  const double w = std::min(relative_compression, 0.25);
+  const double w = std::min(compression_of_all, 0.25);
   return 1.0 - 2.0 * w / (1.0 + std::sqrt(1.0 - 4.0 * w));
 }
 
@@ -50,9 +50,9 @@ std::vector<CapPair> cap_pairs_of(std::span<const ContactClass> classes) {
   return pairs;
 }
 
-CapAngle cap_angle(double overlap, double r) noexcept {
+CapAngle cap_angle(double overlap, double growth) noexcept {
   // A cap of overlap d covers an angle a on either side of its normal with sin(a/2)^2 = d/(2 R).
-  const double square = std::clamp(overlap * 0.5 / (1.0 + r), 0.0, 1.0);
+  const double square = std::clamp(overlap * 0.5 / (1.0 + growth), 0.0, 1.0);
   return {std::sqrt(square), std::sqrt(1.0 - square)};
 }
 

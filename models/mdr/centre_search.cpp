@@ -65,8 +65,8 @@ std::optional<std::size_t> contact_beyond_pull_off(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!supports_by_peeling(p, i)) continue;
     const ContactBranch& branch = p.branch(i);
-    const Frame at = branch.frame(p.law(), p.at().r, p.contact(i).overlap);
-    if (at.displacement < branch.pull_off(p.law(), at.indenter).by_displacement.displacement_1d) return i;
+    const Image at = branch.image(p.law(), p.at().growth, p.contact(i).overlap);
+    if (at.displacement_1d < branch.pull_off(p.law(), at.indenter).by_displacement.displacement_1d) return i;
   }
   return std::nullopt;
 }
@@ -74,11 +74,10 @@ std::optional<std::size_t> contact_beyond_pull_off(const Particle& p) {
 /// Rate at which a peeling contact's share in the stiffness along a direction falls, as the centre moves along that
 /// direction. Positive if the displacement opens the contact.
 double softening_along(const Particle& p, std::size_t i, const CentreVector& direction) {
-  const double along = p.centre().direction(i).dot(direction);
-  const Frame at = p.branch(i).frame(p.law(), p.at().r, p.contact(i).overlap);
+  const double along = p.centre().mean_normal(i).dot(direction);
+  const Image at = p.branch(i).image(p.law(), p.at().growth, p.contact(i).overlap);
   return -p.count(i) * along * along * along *
-         peeling_softening(at, p.law().material.composite_modulus, p.law().surface_energy,
-                           p.contact(i).contact.contact_radius);
+         peeling_softening(at, p.law().adhesion(), p.contact(i).contact.contact_radius);
 }
 
 /// Round-off of the centre's stiffness next to a fold, where the stiffness goes with the root of the distance from it.
@@ -100,12 +99,13 @@ bool comes_first(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   return false;
 }
 
-/// Damped Newton's method for the balance of forces on the centre at a given radius. Damping suffices, because forces
-/// grow with the overlap.
+/// Damped Newton's method for the balance of forces on the centre at a given radius. Damping suffices where forces grow
+/// with the overlap; where edges peel, see leave_saddle().
 class BalanceSearch {
  public:
-  BalanceSearch(Particle& p, double xi, std::span<double> y) : p_(p), xi_(xi), y_(y), count_(p.centre().count()) {
-    p_.evaluate_forces(xi, y);
+  BalanceSearch(Particle& p, double xi, std::span<double> y)
+      : p_(p), xi_(xi), y_(y), count_(p.centre().free_directions()) {
+    p_.try_state(xi, y);
     is_only_one_ = !may_peel_off(p);
   }
 
@@ -129,8 +129,8 @@ class BalanceSearch {
 
   [[nodiscard]] CentreVector newton_step() const {
     const CentreVector step = p_.centre().step();
-    // Contacts below the resolution are so soft that the step has no bound; tangent stiffnesses have a least value.
-    return step.norm() > k_out_of_bounds ? p_.centre().tangent_step() : step;
+    // Contacts below the resolution are so soft that the step has no bound; regularized stiffnesses have a least value.
+    return step.norm() > k_out_of_bounds ? p_.centre().regularized_step() : step;
   }
 
   /// True if a Newton step of that length is round-off, so that the search has converged.
@@ -160,7 +160,7 @@ class BalanceSearch {
     for (int halving = 0; halving < k_most_halvings; ++halving) {
       set_centre(y_, count_, before + step);
       try {
-        p_.evaluate_forces(xi_, y_);
+        p_.try_state(xi_, y_);
         if (is_nearer(step.norm())) break;
       } catch (const std::domain_error&) {
         if (step.norm() < k_epsilon || halving + 1 == k_most_halvings) throw;
@@ -176,7 +176,7 @@ class BalanceSearch {
     if (p_.centre().force().norm() < std::max(error_, noise_) || length < k_epsilon) return true;
     // While soft contacts come to balance, stiff ones may raise the net force: the length of the step that remains is
     // the better measure. With a peeling edge, it might lead to another equilibrium.
-    return is_only_one_ && p_.centre().step_of_kept().norm() < 0.5 * step_size_;
+    return is_only_one_ && p_.centre().step_with_last_stiffness().norm() < 0.5 * step_size_;
   }
 
   /// Checks the end of the search. A unique equilibrium is reached to round-off when the search is stuck. Where edges
@@ -230,7 +230,7 @@ std::optional<std::size_t> weakest_contact(Particle& p) {
         side != 0.0 ? side * (softenings[i] - softenings[j]) : std::abs(softenings[i]) - std::abs(softenings[j]);
     if (std::abs(softer) > k_alike * size) return softer > 0.0;
     if (p.drive(i).rate() != p.drive(j).rate()) return p.drive(i).rate() < p.drive(j).rate();
-    return comes_first(p.centre().in_space(p.centre().direction(i)), p.centre().in_space(p.centre().direction(j)));
+    return comes_first(p.centre().in_space(p.centre().mean_normal(i)), p.centre().in_space(p.centre().mean_normal(j)));
   };
   std::optional<std::size_t> weakest;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -254,11 +254,12 @@ CentreStiffness centre_stiffness(Particle& p) {
     if (!branch.touches() || p.is_force_controlled(i)) return std::pair(0.0, 0.0);
     const Contact& now = p.contact(i).contact;
     const double count = p.count(i) * along * along;
-    const double tangent = branch.tangent_stiffness(p.law(), now);
+    const double present = branch.regularized_stiffness(p.law(), now);
     // The reference is the stiffness without peeling or softening. Equal contacts lose their stiffness together, which
     // would not show relative to the sum of their present stiffnesses.
-    const double at_first = branch.regime == Regime::fully_plastic ? p.law().plastic_stiffness() : tangent;
-    return std::pair(count * tangent, count * std::max(branch.unpeeled_stiffness(p.law(), p.at().r, now), at_first));
+    const double at_first = branch.regime == Regime::fully_plastic ? p.law().plastic_stiffness() : present;
+    return std::pair(count * present,
+                     count * std::max(branch.reference_stiffness(p.law(), p.at().growth, now), at_first));
   });
 }
 
@@ -280,7 +281,7 @@ void check_softening(const Particle& p) {
 void move_centre(Particle& p, double xi, std::span<double> y) {
   BalanceSearch(p, xi, y).run();
   check_softening(p);
-  p.accept_volume(xi, y);
+  p.keep_trial(xi, y);
 }
 
 namespace {
@@ -298,9 +299,9 @@ class SaddleExit {
         xi_(xi),
         y_(y),
         is_balanced_(is_balanced),
-        saddle_(centre_of(y, p.centre().count())),
+        saddle_(centre_of(y, p.centre().free_directions())),
         beyond_(contact_beyond_pull_off(p)),
-        direction_((beyond_ ? p.centre().direction(*beyond_) : centre_stiffness(p).direction).normalized()) {}
+        direction_((beyond_ ? p.centre().mean_normal(*beyond_) : centre_stiffness(p).direction).normalized()) {}
 
   /// Finds the nearest state on one side of the saddle where the contacts hold the centre.
   /// @param side  1 or -1
@@ -359,7 +360,7 @@ class SaddleExit {
 
  private:
   void go(double distance) {
-    set_centre(y_, p_.centre().count(), saddle_ + distance * direction_);
+    set_centre(y_, p_.centre().free_directions(), saddle_ + distance * direction_);
     p_.evaluate(xi_, y_);
   }
 
@@ -384,7 +385,7 @@ class SaddleExit {
 }  // namespace
 
 bool leave_saddle(Particle& p, double xi, std::span<double> y, bool is_balanced) {
-  p.evaluated(xi, y);
+  p.at_state(xi, y);
   if (is_balanced && holds_centre(p)) return true;
   SaddleExit line(p, xi, y, is_balanced);
   for (const double side : {1.0, -1.0}) {
@@ -400,7 +401,7 @@ bool leave_saddle(Particle& p, double xi, std::span<double> y, bool is_balanced)
 }
 
 bool approach_balance(Particle& p, double xi, std::span<double> y) {
-  const int count = p.centre().count();
+  const int count = p.centre().free_directions();
   p.evaluate(xi, y);
   CentreVector step = p.centre().step();
   const CentreVector before = centre_of(y, count);

@@ -20,8 +20,8 @@ inline constexpr double k_at_fold = 1e-2;
 [[nodiscard]] std::optional<std::size_t> weakest_contact(Particle& p);
 /// True if a plastic contact is softened past its peak so far that it may no longer constrain a free centre.
 [[nodiscard]] bool is_any_softened(const Particle& p) noexcept;
-/// Tangent stiffness of the centre in its softest direction, over what it would be if no edge peeled and no contact
-/// were softened past its peak. Zero at a fold of the equilibrium.
+/// Stiffness of the centre in its softest direction over its reference, as CentreStiffness says. Zero at a fold of the
+/// equilibrium.
 [[nodiscard]] CentreStiffness centre_stiffness(Particle& p);
 /// Guard of a fold: centre_stiffness() less the value at which the fold counts as reached; negative beyond.
 [[nodiscard]] double centre_stiffness_guard(Particle& p);

@@ -254,17 +254,17 @@ UnloadingShape unloading_shape(const Material& material, double radius, double o
   const double a = std::sqrt(area);
   auto [shape, zeta, s, k] = indenter_left(material.composite_modulus, material.poisson_ratio, radius, m, a, pressure);
 
-  shape.pressure_by_max = -decrement / (radius * pressure);
-  shape.pressure_by_radius = decrement * m / (radius * radius * pressure);
-  shape.contact_radius_by_max = (radius - m) / area;
-  shape.contact_radius_by_radius = m / area;
+  shape.log_pressure_by_max = -decrement / (radius * pressure);
+  shape.log_pressure_by_radius = decrement * m / (radius * radius * pressure);
+  shape.log_contact_radius_by_max = (radius - m) / area;
+  shape.log_contact_radius_by_radius = m / area;
 
   // zeta/s - 1 = -1/(s (s + zeta)), which keeps its digits for small contacts (zeta >> 1).
   const double rho_by_zeta = (k / (s * s) - (1.0 + k * zeta / s)) / (s * (s + zeta));
-  const double height_by_max = shape.height * (shape.pressure_by_max + shape.contact_radius_by_max);
-  const double height_by_radius = shape.height * (shape.pressure_by_radius + shape.contact_radius_by_radius);
-  shape.rho_by_max = rho_by_zeta * ((0.5 * height_by_max - 1.0) / a - zeta * shape.contact_radius_by_max);
-  shape.rho_by_radius = rho_by_zeta * ((0.5 * height_by_radius + 1.0) / a - zeta * shape.contact_radius_by_radius);
+  const double height_by_max = shape.height * (shape.log_pressure_by_max + shape.log_contact_radius_by_max);
+  const double height_by_radius = shape.height * (shape.log_pressure_by_radius + shape.log_contact_radius_by_radius);
+  shape.rho_by_max = rho_by_zeta * ((0.5 * height_by_max - 1.0) / a - zeta * shape.log_contact_radius_by_max);
+  shape.rho_by_radius = rho_by_zeta * ((0.5 * height_by_radius + 1.0) / a - zeta * shape.log_contact_radius_by_radius);
   return shape;
 }
 
@@ -289,8 +289,8 @@ Contact on_unloading_branch(const UnloadingShape& shape, double composite_modulu
   return {.contact_radius = a,
           .force = yield_force * phi_theta,
           .by_overlap = 2.0 * composite_modulus * a / (1.0 - shape.rho),
-          .by_radius = by(shape.pressure_by_radius, shape.contact_radius_by_radius, shape.rho_by_radius, 0.0),
-          .by_overlap_max = by(shape.pressure_by_max, shape.contact_radius_by_max, shape.rho_by_max, 1.0)};
+          .by_radius = by(shape.log_pressure_by_radius, shape.log_contact_radius_by_radius, shape.rho_by_radius, 0.0),
+          .by_overlap_max = by(shape.log_pressure_by_max, shape.log_contact_radius_by_max, shape.rho_by_max, 1.0)};
 }
 
 }  // namespace

@@ -98,10 +98,10 @@ struct UnloadingShape {
   double height = 0.0;            ///< A = 4 p_Y a_max / E*
   double rho = 0.0;               ///< share of the elastic recovery that moves the centre, in (0, 1)
   double recovery = 0.0;          ///< A (1 - rho)/2: the contact opens at m - recovery
-  // Logarithmic derivatives by m at fixed R and by R at fixed m; for rho the plain derivatives.
-  double pressure_by_max = 0, pressure_by_radius = 0;              ///< p_x / p_Y
-  double contact_radius_by_max = 0, contact_radius_by_radius = 0;  ///< a_x / a_max
-  double rho_by_max = 0, rho_by_radius = 0;                        ///< rho_x
+  // Derivatives by m at fixed R and by R at fixed m; logarithmic ones for pressure and contact radius.
+  double log_pressure_by_max = 0, log_pressure_by_radius = 0;              ///< p_x / p_Y
+  double log_contact_radius_by_max = 0, log_contact_radius_by_radius = 0;  ///< a_x / a_max
+  double rho_by_max = 0, rho_by_radius = 0;                                ///< rho_x
 };
 
 /// Indenter that a fully plastic contact leaves when it unloads from the overlap m, with derivatives (eqs. 27-35).

@@ -56,24 +56,24 @@ double ContactLaw::least_stiffness() const noexcept {
 
 double ContactLaw::plastic_stiffness() const noexcept { return 2.0 * pi * material.yield_stress; }
 
-double ContactBranch::touching_overlap(const ContactLaw& law, double r) const {
+double ContactBranch::touching_overlap(const ContactLaw& law, double growth) const {
   if (regime != Regime::separated && regime != Regime::unloading) return 0.0;
-  const UnloadingShape& dent = shape(law, r, 0.0);
+  const UnloadingShape& dent = shape(law, growth, 0.0);
   return dent.overlap_max - dent.recovery;
 }
 
-const UnloadingShape& ContactBranch::shape(const ContactLaw& law, double r, double overlap) const {
-  const double radius = 1.0 + r;
-  const double most = regime == Regime::fully_plastic ? overlap : largest_overlap(law, r);
+const UnloadingShape& ContactBranch::shape(const ContactLaw& law, double growth, double overlap) const {
+  const double radius = 1.0 + growth;
+  const double most = regime == Regime::fully_plastic ? overlap : largest_overlap(law, growth);
   if (shape_.radius != radius || shape_.overlap_max != most) {
     shape_ = unloading_shape(law.material, radius, most, area_constant);
   }
   return shape_;
 }
 
-Frame ContactBranch::frame(const ContactLaw& law, double r, double overlap) const {
-  return regime == Regime::elastic ? elastic_frame(law.elastic_profile, 1.0 + r, overlap)
-                                   : unloading_frame(shape(law, r, overlap), overlap);
+Image ContactBranch::image(const ContactLaw& law, double growth, double overlap) const {
+  return regime == Regime::elastic ? elastic_image(law.elastic_profile, 1.0 + growth, overlap)
+                                   : unloading_image(shape(law, growth, overlap), overlap);
 }
 
 const PullOff& ContactBranch::pull_off(const ContactLaw& law, const Indenter& indenter) const {
@@ -84,19 +84,19 @@ const PullOff& ContactBranch::pull_off(const ContactLaw& law, const Indenter& in
   return pull_off_;
 }
 
-Contact ContactBranch::contact(const ContactLaw& law, double r, double overlap) const {
+Contact ContactBranch::contact(const ContactLaw& law, double growth, double overlap) const {
   Contact contact = [&]() -> Contact {
-    if (!edge.follows()) return adhering_contact(law, r, overlap);
+    if (!edge.follows()) return adhering_contact(law, growth, overlap);
     switch (regime) {
       case Regime::open:
       case Regime::separated:
         break;
       case Regime::elastic:
-        return elastic_branch(law, 1.0 + r, overlap);
+        return elastic_branch(law, 1.0 + growth, overlap);
       case Regime::fully_plastic:
-        return plastic_contact(law.material, 1.0 + r, overlap, area_constant);
+        return plastic_contact(law.material, 1.0 + growth, overlap, area_constant);
       case Regime::unloading:
-        return unloading_branch(law, shape(law, r, overlap), overlap);
+        return unloading_branch(law, shape(law, growth, overlap), overlap);
     }
     return {};
   }();
@@ -104,55 +104,56 @@ Contact ContactBranch::contact(const ContactLaw& law, double r, double overlap) 
   return contact;
 }
 
-Contact ContactBranch::adhering_contact(const ContactLaw& law, double r, double overlap) const {
-  const Frame at = frame(law, r, overlap);
+Contact ContactBranch::adhering_contact(const ContactLaw& law, double growth, double overlap) const {
+  const Image at = image(law, growth, overlap);
   return edge.sticks() ? sticking_contact(at, law.material.composite_modulus, edge.radius)
                        : peeling_contact(at, law.adhesion(), pull_off(law, at.indenter), law.continues_off_branch);
 }
 
-Contact ContactBranch::stiff_contact(const ContactLaw& law, double r, double overlap, const Contact& now) const {
+Contact ContactBranch::stiff_contact(const ContactLaw& law, double growth, double overlap, const Contact& now) const {
   const bool is_dent = regime == Regime::unloading;
   if (!edge.follows() || !(is_dent || regime == Regime::elastic)) return now;
-  const double touch = touching_overlap(law, r);
+  const double touch = touching_overlap(law, growth);
   if (overlap - touch >= k_resolution) return now;
-  return contact(law, r, is_dent ? std::min(touch + k_resolution, largest_overlap(law, r)) : k_resolution);
+  return contact(law, growth, is_dent ? std::min(touch + k_resolution, largest_overlap(law, growth)) : k_resolution);
 }
 
-bool ContactBranch::is_visible(const ContactLaw& law, double r, double overlap, double magnitude) const {
+bool ContactBranch::is_visible(const ContactLaw& law, double growth, double overlap, double magnitude) const {
   if (!edge.follows() || (regime != Regime::elastic && regime != Regime::unloading)) return true;
-  const double touch = touching_overlap(law, r);
+  const double touch = touching_overlap(law, growth);
   return !(overlap - touch < k_round_off * (magnitude + touch));
 }
 
-double ContactBranch::displacement_under(const ContactLaw& law, double r, double force, double guess) const {
+double ContactBranch::approach_under(const ContactLaw& law, double growth, double force, double guess) const {
   if (!edge.follows()) {
-    const Indenter indenter = frame(law, r, 0.0).indenter;
+    const Indenter indenter = image(law, growth, 0.0).indenter;
     const double modulus = law.material.composite_modulus;
-    const double displacement_1d = edge.sticks() ? sticking_displacement(indenter, modulus, edge.radius, force)
-                                                 : peel_at_force(indenter, modulus, law.surface_energy,
-                                                                 pull_off(law, indenter).by_force.contact_radius, force)
-                                                       .displacement_1d;
-    return (regime == Regime::elastic ? displacement_1d : overlap_at(shape(law, r, 0.0), displacement_1d)) - r;
+    const double displacement_1d =
+        edge.sticks() ? sticking_displacement(indenter, modulus, edge.radius, force)
+                      : peel_at_force(indenter, law.adhesion(), pull_off(law, indenter).by_force.contact_radius, force)
+                            .displacement_1d;
+    return (regime == Regime::elastic ? displacement_1d : overlap_at(shape(law, growth, 0.0), displacement_1d)) -
+           growth;
   }
   switch (regime) {
     case Regime::open:
     case Regime::separated:
       // A growing particle pushes an idle wall along.
-      return std::min(resting, touching_overlap(law, r) - r);
+      return std::min(resting, touching_overlap(law, growth) - growth);
     case Regime::elastic:
-      return elastic_overlap(law.elastic_profile, law.material.composite_modulus, 1.0 + r, force) - r;
+      return elastic_overlap(law.elastic_profile, law.material.composite_modulus, 1.0 + growth, force) - growth;
     case Regime::fully_plastic:
-      return plastic_overlap(law.material, 1.0 + r, force, area_constant, guess + r) - r;
+      return plastic_overlap(law.material, 1.0 + growth, force, area_constant, guess + growth) - growth;
     case Regime::unloading:
-      return unloading_overlap(shape(law, r, 0.0), force) - r;
+      return unloading_overlap(shape(law, growth, 0.0), force) - growth;
   }
   return guess;
 }
 
-double ContactBranch::energy(const ContactLaw& law, double r, double overlap, double contact_radius,
+double ContactBranch::energy(const ContactLaw& law, double growth, double overlap, double contact_radius,
                              PlasticPart part) const {
   const double modulus = law.material.composite_modulus;
-  if (!edge.follows()) return adhesive_energy(frame(law, r, overlap), modulus, law.surface_energy, contact_radius);
+  if (!edge.follows()) return adhesive_energy(image(law, growth, overlap), law.adhesion(), contact_radius);
   // A contact closes without attraction, so no work is done on the surface; opening it takes the surface energy, which
   // lowers the recoverable energy.
   const double surface =
@@ -162,58 +163,59 @@ double ContactBranch::energy(const ContactLaw& law, double r, double overlap, do
     case Regime::separated:
       break;
     case Regime::elastic:
-      return elastic_energy(law.elastic_profile, modulus, 1.0 + r, overlap) - surface;
+      return elastic_energy(law.elastic_profile, modulus, 1.0 + growth, overlap) - surface;
     case Regime::fully_plastic:
-      if (part == PlasticPart::work_done) return plastic_work_primitive(law.material, 1.0 + r, overlap, area_constant);
-      return plastic_energy(shape(law, r, overlap)) - (1.0 - shape_.rho) * surface;
+      if (part == PlasticPart::work_done)
+        return plastic_work_primitive(law.material, 1.0 + growth, overlap, area_constant);
+      return plastic_energy(shape(law, growth, overlap)) - (1.0 - shape_.rho) * surface;
     case Regime::unloading:
-      return unloading_energy(shape(law, r, overlap), overlap) - (1.0 - shape_.rho) * surface;
+      return unloading_energy(shape(law, growth, overlap), overlap) - (1.0 - shape_.rho) * surface;
   }
   return 0.0;
 }
 
-double ContactBranch::press_rate(const ContactLaw& law, double r, double overlap, double contact_radius,
-                                 double overlap_rate, double growth) const {
-  const Frame at = frame(law, r, overlap);
-  Frame::Change change = at.by_radius;
+double ContactBranch::press_rate(const ContactLaw& law, double growth, double overlap, double contact_radius,
+                                 double overlap_rate, double growth_rate) const {
+  const Image at = image(law, growth, overlap);
+  Image::Change change = at.by_radius;
   if (law.is_shifted()) {
-    change.displacement += at.by_overlap_max.displacement;
+    change.displacement_1d += at.by_overlap_max.displacement_1d;
     change.height += at.by_overlap_max.height;
     change.half_width += at.by_overlap_max.half_width;
   }
-  return mdr::press_rate(at, change, contact_radius, overlap_rate, growth);
+  return mdr::press_rate(at, change, contact_radius, overlap_rate, growth_rate);
 }
 
-double ContactBranch::tangent_stiffness(const ContactLaw& law, const Contact& now) const noexcept {
+double ContactBranch::regularized_stiffness(const ContactLaw& law, const Contact& now) const noexcept {
   const bool is_soft_at_first = regime != Regime::fully_plastic && !edge.peels();
   return is_soft_at_first ? std::max(now.by_overlap, law.least_stiffness()) : now.by_overlap;
 }
 
-double ContactBranch::unpeeled_stiffness(const ContactLaw& law, double r, const Contact& now) const {
-  const double by_overlap = edge.peels() && regime != Regime::elastic ? 1.0 / (1.0 - shape(law, r, 0.0).rho) : 1.0;
-  return mdr::unpeeled_stiffness(edge, now, law.material.composite_modulus, by_overlap);
+double ContactBranch::reference_stiffness(const ContactLaw& law, double growth, const Contact& now) const {
+  const double by_overlap = edge.peels() && regime != Regime::elastic ? 1.0 / (1.0 - shape(law, growth, 0.0).rho) : 1.0;
+  return mdr::reference_stiffness(edge, now, law.material.composite_modulus, by_overlap);
 }
 
 bool ContactBranch::may_yield(const ContactLaw& law) const noexcept {
   return (is_on_primary_branch || law.is_shifted()) && std::isfinite(law.material.yield_overlap_ratio);
 }
 
-double ContactBranch::yield_guard(const ContactLaw& law, double r, double overlap, double least) const noexcept {
-  return overlap / std::max((1.0 + r) * law.material.yield_overlap_ratio, least) - 1.0;
+double ContactBranch::yield_guard(const ContactLaw& law, double growth, double overlap, double least) const noexcept {
+  return overlap / std::max((1.0 + growth) * law.material.yield_overlap_ratio, least) - 1.0;
 }
 
-double ContactBranch::opening_guard(const ContactLaw& law, double r, double overlap) const {
-  return regime == Regime::elastic ? overlap : 1.0 - unloading_fraction(shape(law, r, overlap), overlap);
+double ContactBranch::opening_guard(const ContactLaw& law, double growth, double overlap) const {
+  return regime == Regime::elastic ? overlap : 1.0 - unloading_fraction(shape(law, growth, overlap), overlap);
 }
 
-ContactBranch ContactBranch::with_largest(const ContactLaw& law, double r, double overlap) const noexcept {
+ContactBranch ContactBranch::with_largest(const ContactLaw& law, double growth, double overlap) const noexcept {
   ContactBranch next = *this;
-  next.largest = overlap - (law.is_shifted() ? r : 0.0);
+  next.largest = overlap - (law.is_shifted() ? growth : 0.0);
   return next;
 }
 
-ContactBranch ContactBranch::unloaded(const ContactLaw& law, double r, double overlap) const noexcept {
-  ContactBranch next = with_largest(law, r, overlap);
+ContactBranch ContactBranch::unloaded(const ContactLaw& law, double growth, double overlap) const noexcept {
+  ContactBranch next = with_largest(law, growth, overlap);
   next.is_on_primary_branch = false;
   if (regime == Regime::fully_plastic) next.regime = Regime::unloading;
   return next;
@@ -226,10 +228,10 @@ ContactBranch ContactBranch::reloaded() const noexcept {
   return next;
 }
 
-ContactBranch ContactBranch::yielded(const ContactLaw& law, double r) const noexcept {
+ContactBranch ContactBranch::yielded(const ContactLaw& law, double growth) const noexcept {
   ContactBranch next = reloaded();
   next.regime = Regime::fully_plastic;
-  next.area_constant = yield_area_constant(law.material.yield_overlap_ratio, 1.0 + r);
+  next.area_constant = yield_area_constant(law.material.yield_overlap_ratio, 1.0 + growth);
   next.shape_ = {};
   return next;
 }
@@ -240,9 +242,9 @@ ContactBranch ContactBranch::made() const noexcept {
   return next;
 }
 
-ContactBranch ContactBranch::lost(double displacement) const noexcept {
+ContactBranch ContactBranch::lost(double approach) const noexcept {
   ContactBranch next = *this;
-  next.resting = displacement;
+  next.resting = approach;
   next.regime = regime == Regime::unloading ? Regime::separated : Regime::open;
   return next;
 }

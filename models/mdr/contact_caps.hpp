@@ -30,15 +30,13 @@ class ContactCaps {
   /// Finds the largest angles that the caps can have until the step or the mode ends, for may_meet().
   void set_largest_angles(const Particle& p);
   /// False if the caps of a pair stay apart until the step or the mode ends.
-  [[nodiscard]] bool may_meet(std::size_t pair) const noexcept {
-    return !(guard_at(largest_angles_, pair) < -k_out_of_reach);
-  }
+  [[nodiscard]] bool may_meet(std::size_t pair) const noexcept;
   /// Guard, at the last set_angles(): >= 0 where the caps of a pair intersect.
   [[nodiscard]] double guard(std::size_t pair) const noexcept { return guard_at(angles_, pair); }
 
   /// Records and logs that the caps of a pair have met.
   /// @return the reason to stop, if the settings say so
-  std::optional<DomainEnd> meet(std::size_t pair, double r, std::vector<Event>& log);
+  std::optional<DomainEnd> meet(std::size_t pair, double growth, std::vector<Event>& log);
   /// Records caps that intersect from the start of a mode, because a contact was made within the cap of another one: no
   /// guard fires there. Caps that have parted may meet again.
   /// @return the reason to stop, if the settings say so
@@ -48,8 +46,6 @@ class ContactCaps {
   [[nodiscard]] std::optional<double> first_radius() const noexcept { return first_radius_; }
 
  private:
-  static constexpr double k_out_of_reach = 1e-9;
-
   [[nodiscard]] double guard_at(const std::vector<CapAngle>& angles, std::size_t pair) const noexcept {
     const CapPair& caps = pairs_[pair];
     return cap_guard(caps, angles[static_cast<std::size_t>(caps.first)], angles[static_cast<std::size_t>(caps.second)]);

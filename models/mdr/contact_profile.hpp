@@ -17,7 +17,7 @@ namespace monograin::mdr {
 /// | contact                         | indenter                 | contact_radius      | displacement_1d       |
 /// | elastic                         | of the elastic contact   | free_contact_radius | overlap               |
 /// | yielded, at its largest overlap | of the unloading shape   | half width b        | half height A/2       |
-/// | yielded, unloading              | of the unloading shape   | free_contact_radius | of its frame          |
+/// | yielded, unloading              | of the unloading shape   | free_contact_radius | of its image          |
 /// | adhesive, sticking or peeling   | as without adhesion      | that of the edge    | as without adhesion   |
 struct ContactProfile {
   Indenter indenter;               ///< A > 0, b > 0

@@ -29,7 +29,7 @@ void move_walls(const Particle& p, double xi, std::span<double> y) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!p.is_force_controlled(i)) continue;
     double& wall = y[p.setup().wall_index[i]];
-    wall = p.branch(i).displacement_under(p.law(), y[k_radius], p.drive(i).value(xi), wall);
+    wall = p.branch(i).approach_under(p.law(), y[k_growth], p.drive(i).value(xi), wall);
   }
 }
 
@@ -37,7 +37,8 @@ void record_walls(const Particle& p, double xi, std::span<double> y) noexcept {
   if (!p.setup().takes_forces) return;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.setup().classes[i].takes_force && !p.is_force_controlled(i))
-      y[p.setup().wall_index[i]] = p.walls().position(i, xi) + p.centre().moved_towards(i, y.subspan(k_centre));
+      y[p.setup().wall_index[i]] =
+          p.walls().displacement(i, xi) + p.centre().approach_by_centre(i, y.subspan(k_centre));
   }
 }
 
@@ -48,7 +49,7 @@ void move_centre_and_walls(Particle& p, double xi, std::span<double> y) {
 }
 
 void complete(Particle& p, double xi, std::span<double> y) {
-  if (!p.mode.is_growing) y[k_radius] = p.mode.held_radius;
+  if (!p.mode.is_growing) y[k_growth] = p.mode.held_growth;
   bool is_balanced = true;
   try {
     move_centre_and_walls(p, xi, y);
@@ -63,7 +64,7 @@ void complete(Particle& p, double xi, std::span<double> y) {
 }
 
 void grow(Particle& p, double xi, std::span<double> y) {
-  const int count = p.centre().count();
+  const int count = p.centre().free_directions();
   double below = -k_infinity;
   double above = k_infinity;
   double step_size = k_infinity;
@@ -88,14 +89,14 @@ void grow(Particle& p, double xi, std::span<double> y) {
     // The balance rises with the radius, but has a kink where a wall under force pulls off: Newton's method may step
     // across it and back without end. The radii seen on either side bound the next one, and bisection breaks the cycle.
     if (!p.centre().is_free()) {
-      (defect < 0.0 ? below : above) = y[k_radius];
-      const double next = y[k_radius] + step;
+      (defect < 0.0 ? below : above) = y[k_growth];
+      const double next = y[k_growth] + step;
       const bool is_bounded = std::isfinite(above - below);
       if (std::abs(step) >= std::max(last_step, k_least_step) && is_bounded && (next <= below || next >= above)) {
-        step = std::midpoint(below, above) - y[k_radius];
+        step = std::midpoint(below, above) - y[k_growth];
       }
     }
-    y[k_radius] += step;
+    y[k_growth] += step;
     const CentreVector centre_step = to_balance + step * by_radius;
     if (count > 0) set_centre(y, count, centre_of(y, count) + centre_step);
     const double size = std::max(std::abs(step), centre_step.norm());

@@ -20,12 +20,12 @@ struct CentreLoad {
   double force = 0.0;
   double force_by_time = 0.0;
   double force_by_radius = 0.0;
-  double stiffness = 0.0;
-  double tangent_stiffness = 0.0;  ///< ContactBranch::tangent_stiffness(), which has a least value for idle contacts
+  double stiffness = 0.0;              ///< tangent stiffness dF/d(delta)
+  double regularized_stiffness = 0.0;  ///< at least that of an idle contact: ContactBranch::regularized_stiffness()
 };
 
-/// Tangent stiffness of the centre in its softest direction, over what it would be if no edge peeled and no contact
-/// were softened past its peak.
+/// Present stiffness of the centre in its softest direction over the reference: what it would be if no edge peeled and
+/// no contact were softened past its peak.
 struct CentreStiffness {
   double value = 0.0;
   CentreVector direction = CentreVector::Zero();
@@ -38,15 +38,15 @@ class FreeCentre {
   FreeCentre(std::span<const ContactClass> classes, bool is_free) : lines_(classes, is_free), loads_(lines_.size()) {}
 
   /// Free directions, 0 to 3.
-  [[nodiscard]] int count() const noexcept { return lines_.dimension(); }
-  [[nodiscard]] bool is_free() const noexcept { return count() > 0; }
+  [[nodiscard]] int free_directions() const noexcept { return lines_.free_directions(); }
+  [[nodiscard]] bool is_free() const noexcept { return free_directions() > 0; }
   /// Mean normal of a class along the free directions.
-  [[nodiscard]] const CentreVector& direction(std::size_t i) const noexcept { return lines_.arm(i); }
-  /// By how much the centre has moved towards the walls of a class.
+  [[nodiscard]] const CentreVector& mean_normal(std::size_t i) const noexcept { return lines_.mean_normal(i); }
+  /// n.x, by how much a displacement of the centre brings it nearer to the walls of a class.
   /// @param position  of the centre along the free directions, and whatever follows
-  [[nodiscard]] double moved_towards(std::size_t i, std::span<const double> position) const noexcept {
+  [[nodiscard]] double approach_by_centre(std::size_t i, std::span<const double> position) const noexcept {
     double distance = 0.0;
-    for (int k = 0; k < count(); ++k) distance += direction(i)[k] * position[static_cast<std::size_t>(k)];
+    for (int k = 0; k < free_directions(); ++k) distance += mean_normal(i)[k] * position[static_cast<std::size_t>(k)];
     return distance;
   }
   /// True if a contact of the class acts on the centre.
@@ -54,57 +54,62 @@ class FreeCentre {
   /// A vector along the free directions, in space.
   [[nodiscard]] Eigen::Vector3d in_space(const CentreVector& vector) const { return lines_.in_space(vector); }
 
-  /// Forgets all loads.
+  /// Sets all loads to zero. The stiffnesses of keep_stiffness() stay.
   void clear() noexcept {
-    for (Load& load : loads_) load = {.kept_stiffness = load.kept_stiffness};
+    for (Load& load : loads_) load = {.stiffness_at_last_step = load.stiffness_at_last_step};
   }
   void add(std::size_t i, const CentreLoad& added) noexcept {
-    const double along = lines_.along(i);
+    const double share = lines_.share_on_line(i);
     Load& line = load(i);
-    line.force += added.count * added.force * along;
-    line.force_by_time += added.count * added.force_by_time * along;
-    line.force_by_radius += added.count * added.force_by_radius * along;
-    line.stiffness += added.count * added.stiffness * along * along;
-    line.tangent_stiffness += added.count * added.tangent_stiffness * along * along;
+    line.force += added.count * added.force * share;
+    line.force_by_time += added.count * added.force_by_time * share;
+    line.force_by_radius += added.count * added.force_by_radius * share;
+    line.stiffness += added.count * added.stiffness * share * share;
+    line.regularized_stiffness += added.count * added.regularized_stiffness * share * share;
   }
-  /// Sums up the loads of all lines. A line without stiffness, as at first touch, takes its tangent stiffness.
+  /// Sums up the loads of all lines. A line without stiffness, as at first touch, takes its regularized stiffness.
   void sum_up() noexcept;
   [[nodiscard]] const CentreVector& force() const noexcept { return force_; }
   [[nodiscard]] const CentreMatrix& stiffness() const noexcept { return stiffness_; }
 
   // Displacements of the centre; zero along directions in which no contact constrains it.
 
-  /// Newton step of the centre: displacement that cancels the net force with the present stiffnesses.
+  /// Newton step of the centre: displacement that cancels the net force with the tangent stiffnesses.
   [[nodiscard]] CentreVector step() const { return step_along(&Load::stiffness, &Load::force); }
-  /// Displacement of the centre that cancels the net force with the tangent stiffnesses.
-  [[nodiscard]] CentreVector tangent_step() const { return step_along(&Load::tangent_stiffness, &Load::force); }
-  /// Displacement of the centre that cancels the net force with the stiffnesses that keep_stiffness() has stored.
-  [[nodiscard]] CentreVector step_of_kept() const { return step_along(&Load::kept_stiffness, &Load::force); }
+  /// Displacement of the centre that cancels the net force with the regularized stiffnesses.
+  [[nodiscard]] CentreVector regularized_step() const { return step_along(&Load::regularized_stiffness, &Load::force); }
+  /// Displacement of the centre that cancels the net force with the stiffnesses that keep_stiffness() stored last.
+  [[nodiscard]] CentreVector step_with_last_stiffness() const {
+    return step_along(&Load::stiffness_at_last_step, &Load::force);
+  }
   void keep_stiffness() noexcept;
   /// Derivatives of the centre's position by the step coordinate and by the radius.
-  [[nodiscard]] CentreVector by_time() const { return step_along(&Load::tangent_stiffness, &Load::force_by_time); }
-  [[nodiscard]] CentreVector by_radius() const { return step_along(&Load::tangent_stiffness, &Load::force_by_radius); }
+  [[nodiscard]] CentreVector by_time() const { return step_along(&Load::regularized_stiffness, &Load::force_by_time); }
+  [[nodiscard]] CentreVector by_radius() const {
+    return step_along(&Load::regularized_stiffness, &Load::force_by_radius);
+  }
 
   /// Projector on the directions in which no contact constrains the centre.
   /// @param constrains  contact class -> whether it does
   template <class Constrains>
   [[nodiscard]] CentreMatrix unconstrained(Constrains&& constrains) {
-    for (Load& load : loads_) load.held = 0.0;
+    for (Load& load : loads_) load.present = 0.0;
     for (std::size_t i = 0; i < lines_.classes(); ++i) {
-      if (constrains(i)) load(i).held += lines_.along(i) * lines_.along(i);
+      if (constrains(i)) load(i).present += lines_.share_on_line(i) * lines_.share_on_line(i);
     }
     return unconstrained_directions();
   }
-  /// Softest direction of the centre, and its tangent stiffness over that without peeling and softening.
-  /// @param stiffness_of  (contact class, component of its mean normal along its line) -> its tangent stiffness along
-  ///                      that line, and the one without peeling and softening
+  /// Softest direction of the centre, and its present stiffness over the reference: the stiffness without peeling and
+  /// softening.
+  /// @param stiffness_of  (contact class, CentreLines::share_on_line()) -> present and reference stiffness along its
+  /// line
   template <class StiffnessOf>
   [[nodiscard]] CentreStiffness softest(StiffnessOf&& stiffness_of) {
-    for (Load& load : loads_) load.held = load.unsoftened = 0.0;
+    for (Load& load : loads_) load.present = load.reference = 0.0;
     for (std::size_t i = 0; i < lines_.classes(); ++i) {
-      const auto [held, unsoftened] = stiffness_of(i, lines_.along(i));
-      load(i).held += held;
-      load(i).unsoftened += unsoftened;
+      const auto [present, reference] = stiffness_of(i, lines_.share_on_line(i));
+      load(i).present += present;
+      load(i).reference += reference;
     }
     return softest_direction();
   }
@@ -116,10 +121,10 @@ class FreeCentre {
     double force_by_time = 0.0;
     double force_by_radius = 0.0;
     double stiffness = 0.0;
-    double tangent_stiffness = 0.0;
-    double kept_stiffness = 0.0;
-    double held = 0.0;        ///< work space of unconstrained() and softest()
-    double unsoftened = 0.0;  ///< work space of softest()
+    double regularized_stiffness = 0.0;
+    double stiffness_at_last_step = 0.0;  ///< from keep_stiffness()
+    double present = 0.0;                 ///< work space of unconstrained() and softest()
+    double reference = 0.0;               ///< work space of softest()
   };
   /// Load along the line of a class.
   [[nodiscard]] Load& load(std::size_t i) noexcept { return loads_[lines_.line_of(i)]; }

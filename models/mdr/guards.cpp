@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "mdr/centre_search.hpp"
+#include "mdr/idle.hpp"
 #include "mdr/rates.hpp"
-#include "mdr/resolution.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
@@ -23,8 +23,10 @@ bool goes_one_way(const Particle& p, const Motion& now) {
   bool goes_in = false;
   bool goes_out = false;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    // As a contact grows deeper, the lever of its force on the volume may fall by more than the force grows.
-    if (p.is_force_controlled(i) || 2.0 * std::max(p.drive(i).start(), p.drive(i).end()) > 1.0 - p.at().r) return false;
+    // The compression goes with force times lever, F (1 - delta_o). With a force in proportion to the overlap
+    // delta_o + growth, that rises as long as 2 delta_o < 1 - growth.
+    if (p.is_force_controlled(i) || 2.0 * std::max(p.drive(i).start(), p.drive(i).end()) > 1.0 - p.at().growth)
+      return false;
     const double rate = overlap_rate(p, i, now);
     goes_in = goes_in || rate > 0.0;
     goes_out = goes_out || rate < 0.0;
@@ -40,18 +42,18 @@ double contact_guard(const Particle& p, int kind, std::size_t i, double xi, doub
     const double scale = p.drive(i).size();
     return scale > 0.0 ? p.drive(i).value(xi) / scale + (kind == k_lost ? k_same_overlap : 0.0) : 0.0;
   }
-  const double r = p.at().r;
+  const double growth = p.at().growth;
   const ContactBranch& branch = p.branch(i);
   switch (kind) {
     case k_yield:
       // The round-off of other forces may press an idle contact to its yield overlap.
-      return branch.yield_guard(p.law(), r, overlap, is_idle(p, i) ? resolution(p) : 0.0);
+      return branch.yield_guard(p.law(), growth, overlap, is_idle(p, i) ? resolution(p) : 0.0);
     case k_reload:
-      return overlap - branch.largest_overlap(p.law(), r) - k_same_overlap;
+      return overlap - branch.largest_overlap(p.law(), growth) - k_same_overlap;
     case k_lost:
-      return branch.opening_guard(p.law(), r, is_idle(p, i) ? overlap + resolution(p) : overlap);
+      return branch.opening_guard(p.law(), growth, is_idle(p, i) ? overlap + resolution(p) : overlap);
     case k_dent_touched:
-      return branch.opening_guard(p.law(), r, overlap);
+      return branch.opening_guard(p.law(), growth, overlap);
     default:
       // With a free centre the guard is negative at a touch. Otherwise a wall that the centre leaves and meets again at
       // once would not cross zero.
@@ -61,7 +63,7 @@ double contact_guard(const Particle& p, int kind, std::size_t i, double xi, doub
 
 double edge_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap) {
   const ContactBranch& branch = p.branch(i);
-  const Frame now = branch.frame(p.law(), p.at().r, overlap);
+  const Image now = branch.image(p.law(), p.at().growth, overlap);
   if (kind == k_pull_off) {
     const PullOff& limits = branch.pull_off(p.law(), now.indenter);
     return p.is_force_controlled(i) ? pull_off_guard(limits, p.drive(i).value(xi)) : pull_off_guard(limits, now);
@@ -75,13 +77,13 @@ double edge_guard(const Particle& p, int kind, std::size_t i, double xi, double 
 }
 
 double edge_round_off(const Particle& p, std::size_t i) {
-  const Frame at = p.branch(i).frame(p.law(), p.at().r, p.contact(i).overlap);
+  const Image at = p.branch(i).image(p.law(), p.at().growth, p.contact(i).overlap);
   return k_same_overlap + profile_round_off(at.indenter, p.branch(i).edge.radius) / at.by_overlap;
 }
 
 void GuardSet::arm(Particle& p, ContactCaps& caps, double xi, std::span<const double> y) {
   list_.clear();
-  p.evaluated(xi, y);
+  p.at_state(xi, y);
   const Motion now = p.motion(p.mode.is_growing);
   for (std::size_t i = 0; i < p.size(); ++i) arm_contact(p, i, now);
   const auto is_plastic = [](const ContactBranch& branch) { return branch.regime == Regime::fully_plastic; };
@@ -141,9 +143,9 @@ void GuardSet::add_if_reached(const Particle& p, std::size_t i, const Course& co
                               std::string_view name) {
   const bool is_linear = !course.may_turn && !p.is_force_controlled(i);  // overlap linear in xi, radius held
   const bool is_by_force = p.is_force_controlled(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost);
-  const double last_overlap = p.drive(i).end() + p.at().r;
+  const double last_overlap = p.drive(i).end() + p.at().growth;
   const bool is_known = is_linear || is_by_force;
-  if (is_known && direction * contact_guard(p, kind, i, 1.0, last_overlap) < -1e-9) return;
+  if (is_known && direction * contact_guard(p, kind, i, 1.0, last_overlap) < -k_out_of_reach) return;
   list_.push_back({kind, static_cast<int>(i), direction, name});
 }
 
@@ -198,8 +200,9 @@ void GuardSet::arm_edge(const Particle& p, std::size_t i, const Course& course) 
       break;
     case Edge::sticking: {
       // If the overlap cannot turn, an edge that has stuck since the largest overlap follows again with the reload.
-      const double at_largest = edge_guard(p, k_follow, i, 0.0, branch.largest_overlap(p.law(), p.at().r));
-      if (course.may_come_in && (course.may_turn || at_largest > 1e-9)) list_.push_back({k_follow, index, 1, "follow"});
+      const double at_largest = edge_guard(p, k_follow, i, 0.0, branch.largest_overlap(p.law(), p.at().growth));
+      if (course.may_come_in && (course.may_turn || at_largest > k_out_of_reach))
+        list_.push_back({k_follow, index, 1, "follow"});
       if (course.may_go_out) list_.push_back({k_peel, index, -1, "peel"});
       break;
     }
@@ -261,8 +264,9 @@ double retreat_guard(Particle& p, std::size_t i, double xi, std::span<const doub
 
 double lost_guard(const Particle& p, std::size_t i, double xi) {
   const double guard = contact_guard(p, k_lost, i, xi, p.contact(i).overlap);
-  // An idle contact has an overlap of almost zero, so its guard is near zero all the time, and the contact would be
-  // lost together with any other one. Division by the resolution makes the guard's value large.
+  // On the primary branch, only elastic contacts beside a free centre have this guard. Such a contact, and an idle one,
+  // may have an overlap of almost zero all the time, and would then be lost together with any other one. Division by
+  // the resolution keeps the guard's value away from zero.
   return p.branch(i).is_on_primary_branch || is_idle(p, i) ? guard / k_resolution : guard;
 }
 
@@ -278,17 +282,17 @@ double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, dou
     case k_softened:
       return is_any_softened(p) ? centre_stiffness(p).value - k_margin_of_fold : 1.0;
     case k_singular:
-      return now.free_surface(p.at().r) - k_least_slope;
+      return now.free_surface(p.at().growth) - k_least_slope;
     case k_covered:
-      return p.at().volume.free_surface_at_rest(p.at().r) - k_least_slope;
+      return p.at().volume.free_surface_at_rest(p.at().growth) - k_least_slope;
     case k_greatest_force:
-      return stiffness_left(p, i) - k_last_stiffness;
+      return stiffness_over_initial(p, i) - k_last_stiffness;
     case k_volume:
-      return 1.0 - 4.0 * p.at().volume.relative_compression - k_least_volume;
+      return 1.0 - 4.0 * p.at().volume.compression_of_all - k_least_volume;
     case k_caps:
       return caps.guard(i);
     case k_centre_reached:
-      return 1.0 - p.contact(i).displacement - k_least_distance;
+      return 1.0 - p.contact(i).approach - k_least_distance;
     case k_retreat:
       return retreat_guard(p, i, xi, y, now);
     case k_turn:
@@ -314,7 +318,7 @@ double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, dou
 
 void GuardSet::values(Particle& p, ContactCaps& caps, double xi, std::span<const double> y,
                       std::span<double> values) const {
-  p.evaluated(xi, y);
+  p.at_state(xi, y);
   const Motion now = p.motion(p.mode.is_growing);
   if (has_cap_guards_) caps.set_angles(p);
   for (std::size_t g = 0; g < list_.size(); ++g) values[g] = guard_value(p, caps, list_[g], xi, y, now);

@@ -12,31 +12,41 @@
 
 namespace monograin::mdr {
 
+/// Kinds of guards. Behind each one: its value, the unit of that value in brackets (without: of order one), and the
+/// side on which it has fired. u is the unloading fraction, F a prescribed force, F_max its largest magnitude in the
+/// step.
 enum GuardKind : int {
-  k_yield,
-  k_reload,
-  k_made,
-  k_dent_touched,
-  k_lost,
-  k_retreat,
-  k_turn,
-  k_peel,
-  k_follow,
-  k_pull_off,
-  k_greatest_tension,
-  k_least_tension,
-  k_tension_falls,
-  k_tension_rises,
-  k_unstable,
-  k_softened,
-  k_growth_on,
-  k_growth_off,
-  k_caps,
-  k_singular,
-  k_covered,
-  k_greatest_force,
-  k_volume,
-  k_centre_reached
+  // Contacts.
+  k_yield,         ///< overlap less that of yield [yield overlap]: >= 0
+  k_reload,        ///< overlap less the largest one [R0]: >= 0
+  k_made,          ///< overlap [R0]; under force F [F_max]: >= 0
+  k_dent_touched,  ///< 1 - u; under force F [F_max]: >= 0
+  k_lost,          ///< elastic: overlap [R0]; unloading: 1 - u; under force F [F_max]: <= 0. See also lost_guard()
+  k_retreat,       ///< primary_branch_rate() [fastest wall]: <= 0
+
+  // Edges of adhesive contacts, and extrema of their forces.
+  k_turn,              ///< edge_rate(): changes sign, the edge stops to recede or advance
+  k_peel,              ///< springs at a sticking edge, distance from tearing [stretch that tears them]: <= 0
+  k_follow,            ///< springs at a sticking edge, displacement [stretch that tears them]: >= 0, not stretched
+  k_pull_off,          ///< delta_1D or F less that of pull-off [that of pull-off]: <= 0
+  k_greatest_tension,  ///< force_rate(): >= 0, a tension is greatest
+  k_least_tension,     ///< force_rate(): <= 0, a tension is least
+  k_tension_falls,     ///< force_rate() of a force at rest: >= 0, no event; the least tension comes next
+  k_tension_rises,     ///< force_rate() of a force at rest: <= 0, no event; the greatest tension comes next
+
+  // Free centre.
+  k_unstable,  ///< centre_stiffness_guard(), while edges peel: <= 0
+  k_softened,  ///< centre_stiffness() less its value at a fold, while plastic contacts are softened: <= 0
+
+  // Growth and volume.
+  k_growth_on,       ///< growth_drive(): >= 0
+  k_growth_off,      ///< growth_drive(): <= 0
+  k_caps,            ///< sine of the caps' angles less that between the normals: >= 0; its index is that of a pair
+  k_singular,        ///< free surface [surface] while walls under force and centre move along: <= 0, growth runs away
+  k_covered,         ///< free surface [surface] with walls and centre at rest: <= 0
+  k_greatest_force,  ///< stiffness_over_initial() of a plastic contact under force: <= 0
+  k_volume,          ///< 1 - 4 w over all contacts: <= 0, the volume is not defined
+  k_centre_reached   ///< distance of a wall from the centre [R0]: <= 0
 };
 
 /// Rate of a contact's force, in the unit of force_rate(), that is round-off.
@@ -65,6 +75,9 @@ inline constexpr double k_least_distance = 1e-3;
 /// Round-off of the overlap at which a sticking edge follows again. An edge that has just come to stick leaves that
 /// overlap with the square of its displacement; subtracting this keeps round-off from firing the guard.
 [[nodiscard]] double edge_round_off(const Particle& p, std::size_t i);
+
+/// Value of a guard, away from zero, from which on it cannot fire in a step whose course is known.
+inline constexpr double k_out_of_reach = 1e-9;
 
 /// Set of the guards that are alive until the next transition or the end of the step.
 class GuardSet {

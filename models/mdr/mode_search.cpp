@@ -8,8 +8,8 @@
 #include "mdr/centre_search.hpp"
 #include "mdr/equilibrium.hpp"
 #include "mdr/guards.hpp"
+#include "mdr/idle.hpp"
 #include "mdr/rates.hpp"
-#include "mdr/resolution.hpp"
 #include "mdr/support.hpp"
 #include "system/limit.hpp"
 #include "system/resolution.hpp"
@@ -23,8 +23,8 @@ constexpr double k_passed = 1e-2;
 // Share of the unloading branch for a wall under force control. It is smaller than k_passed, because the wall would go
 // back by the missing force over the stiffness of a plastic contact, many orders below that of the unloading branch.
 constexpr double k_passed_by_force = 1e-6;
-// Change of an overlap at one instant (over R0) beyond which the free centre has jumped to another equilibrium.
-constexpr double k_jumped = 1e-9;
+// Change of an overlap at one instant (over R0) beyond which the free centre has snapped to another equilibrium.
+constexpr double k_snapped = 1e-9;
 
 /// Erases the events of contact i from the log, from index `from` on.
 void forget_events(std::size_t i, std::size_t from, std::vector<Event>& log) {
@@ -37,7 +37,7 @@ Event event_of(std::string_view name, std::size_t i) { return {name, static_cast
 
 const PullOff& pull_off_of(const Particle& p, std::size_t i) {
   const ContactBranch& branch = p.branch(i);
-  return branch.pull_off(p.law(), branch.frame(p.law(), p.at().r, p.contact(i).overlap).indenter);
+  return branch.pull_off(p.law(), branch.image(p.law(), p.at().growth, p.contact(i).overlap).indenter);
 }
 
 /// Tests whether the model predicts the pull-off of a contact that begins to unload (F.7): the model's indenter is
@@ -47,7 +47,7 @@ std::optional<Diagnostic> check_adhesion(const Particle& p, std::size_t i) {
   const Material& material = p.law().material;
   const Control control = p.is_force_controlled(i) ? Control::force : Control::displacement;
   const double critical = pull_off_of(p, i).under(control).contact_radius;
-  const double peak = peak_radius_over_initial_radius(p.contact(i).displacement, material.yield_overlap_ratio);
+  const double peak = peak_radius_over_initial_radius(p.contact(i).approach, material.yield_overlap_ratio);
   const double zone = plastic_zone_size(material.composite_modulus, p.law().surface_energy, material.yield_stress);
   switch (adhesion_validity(critical, peak, zone)) {
     case AdhesionValidity::valid:
@@ -79,12 +79,12 @@ DomainEnd centre_reached(int contact_class) {
 void ModeSearch::begin(const Particle& particle) {
   p_ = particle;
   has_turned_.assign(p_.size(), false);
-  has_resumed_.assign(p_.size(), false);
+  loads_again_.assign(p_.size(), false);
   is_left_.assign(p_.size(), false);
   edges_before_.resize(p_.size());
   for (std::size_t i = 0; i < p_.size(); ++i) edges_before_[i] = p_.branch(i).edge.motion;
-  growth_.reset();
-  has_jumped_ = false;
+  decided_growth_.reset();
+  has_yielded_under_force_ = false;
   validity_.reset();
 }
 
@@ -97,9 +97,9 @@ void ModeSearch::touch_under_force(std::size_t i, double xi, std::span<double> y
 
 std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double xi, std::span<double> y,
                                            ContactCaps& caps, std::vector<Event>& log) {
-  p_.evaluated(xi, y);
+  p_.at_state(xi, y);
   const Motion now = p_.motion(p_.mode.is_growing);
-  std::optional<bool> growth;
+  std::optional<bool> decided;
   bool others_fired = false;
   std::optional<DomainEnd> end;
   for (const Guard& guard : fired) {
@@ -107,7 +107,7 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
     switch (guard.kind) {
       case k_growth_on:
       case k_growth_off:
-        growth = guard.kind == k_growth_on;  // resolve() logs it
+        decided = guard.kind == k_growth_on;  // resolve() logs it
         break;
       case k_greatest_tension:
       case k_least_tension:
@@ -129,18 +129,18 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
         break;
     }
   }
-  if (!others_fired) growth_ = growth;
+  if (!others_fired) decided_growth_ = decided;
   if (end && (log.empty() || log.back().name != end->event.name)) log.push_back(end->event);
   return end;
 }
 
 bool ModeSearch::separate_pulling_walls(double xi, std::span<double> y, std::vector<Event>& log) {
-  p_.evaluated(xi, y);
+  p_.at_state(xi, y);
   const CentreVector softest = centre_stiffness(p_).direction.normalized();
   bool any = false;
   for (std::size_t i = 0; i < p_.size(); ++i) {
     if (!p_.is_force_controlled(i) || !p_.branch(i).touches() || !(p_.drive(i).value(xi) < 0.0)) continue;
-    if (!(std::abs(p_.centre().direction(i).dot(softest)) > k_no_direction)) continue;
+    if (!(std::abs(p_.centre().mean_normal(i).dot(softest)) > k_no_direction)) continue;
     separate(i, y, log);
     any = true;
   }
@@ -177,7 +177,7 @@ bool ModeSearch::is_void(const Guard& guard, const Motion& now) const {
       if (branch.regime != Regime::unloading) return false;
       const double overlap = p_.contact(i).overlap;
       const double passed = p_.is_force_controlled(i) ? k_passed_by_force : k_passed;
-      return unloading_fraction(branch.shape(p_.law(), p_.at().r, overlap), overlap) > passed;
+      return unloading_fraction(branch.shape(p_.law(), p_.at().growth, overlap), overlap) > passed;
     }
     default:
       return false;
@@ -190,8 +190,8 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
   const std::size_t i = guard.list_index();
   switch (guard.kind) {
     case k_yield:
-      p_.set_branch(i, p_.branch(i).yielded(p_.law(), p_.at().r));
-      has_jumped_ = has_jumped_ || p_.is_force_controlled(i);
+      p_.set_branch(i, p_.branch(i).yielded(p_.law(), p_.at().growth));
+      has_yielded_under_force_ = has_yielded_under_force_ || p_.is_force_controlled(i);
       break;
     case k_reload:
       p_.set_branch(i, p_.branch(i).reloaded());
@@ -227,7 +227,7 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       if (edge_rate(p_, i, now) >= -k_at_rest || std::abs(overlap_rate(p_, i, now)) <= k_at_rest) {
         // An edge that has just turned sticks at the verge of peeling and leaves it with the square of its
         // displacement. Round-off has fired the guard and would fire it again; setting the edge back prevents that.
-        const Frame at = p_.branch(i).frame(p_.law(), p_.at().r, p_.contact(i).overlap);
+        const Image at = p_.branch(i).image(p_.law(), p_.at().growth, p_.contact(i).overlap);
         const double round_off = edge_round_off(p_, i) * at.by_overlap;
         p_.set_branch(i, p_.branch(i).with_edge(p_.branch(i).edge.set_back(at.indenter, round_off)));
         return false;
@@ -237,10 +237,12 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
     case k_pull_off:
       if (p_.branch(i).edge.peels()) separate(i, y, log);
       return true;
-    default:  // k_unstable
+    case k_unstable:
       // No contact is left to separate if the peeling one has already pulled off at this instant.
       if (const auto weakest = weakest_contact(p_)) separate(*weakest, y, log);
       return true;
+    default:
+      return false;
   }
   log.push_back({guard.name, guard.index});
   return true;
@@ -254,14 +256,15 @@ std::optional<DomainEnd> ModeSearch::end_of(const Guard& guard, ContactCaps& cap
       return DomainEnd{
           event, {Limit::centre_softening, -1, "tangent stiffness over the initial one", centre_stiffness(p_).value}};
     case k_caps:
-      return caps.meet(i, p_.at().r, log);
+      return caps.meet(i, p_.at().growth, log);
     case k_singular:
     case k_covered:
       return DomainEnd{event,
                        {Limit::free_surface_used_up, -1, "free surface over the particle's surface", k_least_slope}};
     case k_greatest_force:
-      return DomainEnd{
-          event, {Limit::greatest_force, guard.index, "tangent stiffness over the initial one", stiffness_left(p_, i)}};
+      return DomainEnd{event,
+                       {Limit::greatest_force, guard.index, "tangent stiffness over the initial one",
+                        stiffness_over_initial(p_, i)}};
     case k_volume:
       return DomainEnd{event, {Limit::half_volume, -1, "V/V0", 0.5}};
     default:
@@ -286,50 +289,56 @@ void ModeSearch::resolve(double xi, std::span<double> y, std::vector<Event>& log
   made_.clear();
   radius_diverges_ = false;
   p_.mode.loads_on.assign(p_.size(), false);
-  has_resumed_.assign(p_.size(), false);
-  if (!has_jumped_) balance_anew(xi, y, log);
-  p_.mode.held_radius = y[k_radius];
+  loads_again_.assign(p_.size(), false);
+  if (!has_yielded_under_force_) balance_anew(xi, y, log);
+  p_.mode.held_growth = y[k_growth];
   const std::vector<double> first_state(y.begin(), y.end());
   const std::vector<ContactBranch> first_branches = p_.branches();
   const std::size_t first_logged = log.size();
   const std::size_t first_made = made_.size();
-  for (std::size_t round = 0;; ++round) {
-    if (round == most_rounds()) {
-      // Growth that would run away in one of the modes alternates with the branch of a contact.
-      if (radius_diverges_) throw DomainError(Limit::free_surface_used_up);
-      if (has_resumed_ == p_.mode.loads_on) throw DomainError(Limit::no_consistent_regimes);
-      // Contacts that start to unload at their largest overlap, and would then load beyond it, alternate without end.
-      // Searches again from the first state and keeps them on the loading branch.
-      std::ranges::copy(first_state, y.begin());
-      p_.set_branches(first_branches);
-      log.resize(first_logged);
-      made_.resize(first_made);
-      growth_.reset();
-      p_.mode.loads_on = has_resumed_;
-      round = 0;
-    }
-    if (!improve(xi, y, log)) break;
+  while (!settles(xi, y, log)) {
+    // Growth that would run away in one of the modes alternates with the branch of a contact.
+    if (radius_diverges_) throw DomainError(Limit::free_surface_used_up);
+    // Contacts that start to unload at their largest overlap, and would then load beyond it, alternate without end.
+    // Searches again from the first state and keeps them on the loading branch. This ends, because loads_again_ only
+    // grows: if it has not grown since the last restart, the contacts alternate although they are kept loading.
+    if (loads_again_ == p_.mode.loads_on) throw DomainError(Limit::no_consistent_regimes);
+    std::ranges::copy(first_state, y.begin());
+    p_.set_branches(first_branches);
+    log.resize(first_logged);
+    made_.resize(first_made);
+    decided_growth_.reset();
+    p_.mode.loads_on = loads_again_;
   }
   check_support(p_);
   if (p_.mode.is_growing != was_growing) log.push_back({p_.mode.is_growing ? "growth-on" : "growth-off"});
   log.insert(log.end(), made_.begin(), made_.end());
-  accept(xi, y);
+  freeze_mode(xi, y);
+}
+
+/// Corrects the mode until it is consistent.
+/// @return false if it is not after most_rounds() corrections
+bool ModeSearch::settles(double xi, std::span<double> y, std::vector<Event>& log) {
+  for (std::size_t round = 0; round < most_rounds(); ++round) {
+    if (!correct_once(xi, y, log)) return true;
+  }
+  return false;
 }
 
 /// Corrects the mode where the rates contradict it: a contact that unloads in it, for example, but is pressed further.
 /// @return false if the mode is consistent
-bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log) {
-  p_.mode.is_growing = growth_ ? *growth_ : wants_growth(xi, y);
-  p_.evaluated(xi, y);
+bool ModeSearch::correct_once(double xi, std::span<double> y, std::vector<Event>& log) {
+  p_.mode.is_growing = decided_growth_ ? *decided_growth_ : wants_growth(xi, y);
+  p_.at_state(xi, y);
   const std::size_t events_before = log.size();
   if (lose_idle_contacts(p_, xi, y, is_left_, log)) {
     // The lost contacts have pulled the centre in the balance of forces, which is solved again without them.
-    if (!has_jumped_) complete(p_, xi, y);
-    growth_.reset();
+    if (!has_yielded_under_force_) complete(p_, xi, y);
+    decided_growth_.reset();
     return true;
   }
   const Motion now = p_.motion(p_.mode.is_growing);
-  radius_diverges_ = radius_diverges_ || (p_.mode.is_growing && now.free_surface(y[k_radius]) < k_least_slope);
+  radius_diverges_ = radius_diverges_ || (p_.mode.is_growing && now.free_surface(y[k_growth]) < k_least_slope);
   bool has_changed = false;
   std::vector<std::size_t> just_loaded;
   for (std::size_t i = 0; i < p_.size(); ++i) {
@@ -346,29 +355,29 @@ bool ModeSearch::improve(double xi, std::span<double> y, std::vector<Event>& log
   // A wall that a force presses from the start fires no guard, so the walls that balance it close here.
   for (const std::size_t i : just_loaded) touch_under_force(i, xi, y, made_);
   // If a contact has pulled off, the others find a new balance.
-  if (!has_jumped_ && p_.law().adheres()) balance_anew(xi, y, log);
-  if (!has_jumped_ && !p_.law().adheres()) move_walls(p_, xi, y);
+  if (!has_yielded_under_force_ && p_.law().adheres()) balance_anew(xi, y, log);
+  if (!has_yielded_under_force_ && !p_.law().adheres()) move_walls(p_, xi, y);
   // A contact that has just been made carries no force yet and leaves the growth guard's decision standing.
-  if (log.size() > events_before) growth_.reset();
+  if (log.size() > events_before) decided_growth_.reset();
   return true;
 }
 
 /// Freezes what stays constant in the mode that was found.
-void ModeSearch::accept(double xi, std::span<double> y) {
-  const Evaluation& at = p_.evaluated(xi, y);
+void ModeSearch::freeze_mode(double xi, std::span<double> y) {
+  const Evaluation& at = p_.at_state(xi, y);
   p_.mode.frozen_balance = p_.mode.is_growing ? at.volume.value : 0.0;
   // The guard of the free surface cannot fire if it is past zero already.
-  if (p_.mode.is_growing && std::min(p_.motion(true).free_surface(y[k_radius]),
-                                     at.volume.free_surface_at_rest(y[k_radius])) < k_least_slope) {
+  if (p_.mode.is_growing && std::min(p_.motion(true).free_surface(y[k_growth]),
+                                     at.volume.free_surface_at_rest(y[k_growth])) < k_least_slope) {
     throw DomainError(Limit::free_surface_used_up);
   }
   for (std::size_t i = 0; i < p_.size(); ++i) {
-    if (has_greatest_force(p_, i) && stiffness_left(p_, i) < k_last_stiffness)
+    if (has_greatest_force(p_, i) && stiffness_over_initial(p_, i) < k_last_stiffness)
       throw DomainError({Limit::greatest_force, static_cast<int>(i), "tangent stiffness over the initial one",
-                         stiffness_left(p_, i)});
+                         stiffness_over_initial(p_, i)});
   }
   if (!p_.centre().is_free()) return;
-  p_.mode.held_centre = centre_of(y, p_.centre().count());
+  p_.mode.held_centre = centre_of(y, p_.centre().free_directions());
   p_.mode.unconstrained = unconstrained_directions(p_);
   for (std::size_t i = 0; i < p_.size(); ++i) {
     const bool may_pull = !p_.branch(i).edge.follows();
@@ -378,7 +387,7 @@ void ModeSearch::accept(double xi, std::span<double> y) {
 
 /// True if the radius starts to grow, or goes on growing, at this instant.
 bool ModeSearch::wants_growth(double xi, std::span<double> y) {
-  p_.evaluated(xi, y);
+  p_.at_state(xi, y);
   const Motion now = p_.motion(false);
   if (!gate_is_open(p_, now)) return false;
   double drive = growth_drive(p_, now);
@@ -399,7 +408,7 @@ bool ModeSearch::wants_growth(double xi, std::span<double> y) {
   return drive > 0.0;
 }
 
-/// Moves centre and walls to equilibrium in the present mode. When a contact has pulled off, a free centre springs to
+/// Moves centre and walls to equilibrium in the present mode. When a contact has pulled off, a free centre snaps to
 /// another equilibrium. The other contacts follow along their own branches: back from their largest overlap, on beyond
 /// it, their edges stretched or pressed.
 /// @throws std::domain_error if the branches lead to no equilibrium
@@ -409,8 +418,8 @@ void ModeSearch::balance_anew(double xi, std::span<double> y, std::vector<Event>
     return;
   }
   p_.evaluate(xi, y);
-  spring_ = {.branches = p_.branches(), .logged = log.size(), .made = made_.size()};
-  for (std::size_t i = 0; i < p_.size(); ++i) spring_.overlaps.push_back(p_.contact(i).overlap);
+  snap_ = {.branches = p_.branches(), .log_size_before = log.size(), .made_size_before = made_.size()};
+  for (std::size_t i = 0; i < p_.size(); ++i) snap_.overlaps.push_back(p_.contact(i).overlap);
   for (std::size_t round = 0; round < most_rounds(); ++round) {
     const std::vector<double> trial(y.begin(), y.end());
     bool has_arrived = true;
@@ -425,7 +434,7 @@ void ModeSearch::balance_anew(double xi, std::span<double> y, std::vector<Event>
     }
     p_.evaluate(xi, y);
     bool has_changed = false;
-    for (std::size_t i = 0; i < p_.size(); ++i) has_changed = follow_jump(i, xi, y, log) || has_changed;
+    for (std::size_t i = 0; i < p_.size(); ++i) has_changed = follow_snap(i, xi, y, log) || has_changed;
     if (has_changed) continue;
     if (has_arrived) return;
     break;
@@ -433,29 +442,29 @@ void ModeSearch::balance_anew(double xi, std::span<double> y, std::vector<Event>
   throw DomainError(Limit::no_consistent_regimes);
 }
 
-/// Leads a contact along its branches to the overlap that the jump of a free centre gives it.
-/// @return whether its branch has changed
-bool ModeSearch::follow_jump(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log) {
+/// Leads a contact along its branches to the overlap that the snap of a free centre gives it.
+/// @return whether its branch differs from the one at the end of the last round
+bool ModeSearch::follow_snap(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log) {
   if (p_.is_force_controlled(i)) return false;
-  const double r = y[k_radius];
-  const double jump = p_.contact(i).overlap - spring_.overlaps[i];
+  const double growth = y[k_growth];
+  const double change = p_.contact(i).overlap - snap_.overlaps[i];
   // An earlier round may have closed, yielded or reloaded this contact, and a later round may lead it back. Such a
-  // contact therefore begins each round on its branch before the jump.
-  const ContactBranch& before = spring_.branches[i];
+  // contact therefore begins each round on its branch before the snap, and has to arrive where it was last.
+  const ContactBranch& before = snap_.branches[i];
   const ContactBranch last = p_.branch(i);
   const bool has_entered = last.is_on_primary_branch && (!before.is_on_primary_branch || last.regime != before.regime);
   if (has_entered) {
     p_.set_branch(i, before);
-    p_.evaluate_contact(i, p_.contact(i).displacement, r);
-    forget_events(i, spring_.logged, log);
-    forget_events(i, spring_.made, made_);
+    p_.evaluate_contact(i, p_.contact(i).approach, growth);
+    forget_events(i, snap_.log_size_before, log);
+    forget_events(i, snap_.made_size_before, made_);
   }
-  if (std::abs(jump) <= k_jumped) return has_entered;
-  // A contact that unloads in the jump turns at the overlap that it had before.
-  const bool turns = jump < 0.0 && p_.branch(i).touches() && p_.branch(i).edge.follows();
-  if (turns) p_.evaluate_contact(i, spring_.overlaps[i] - r, r);
-  p_.assume_rate(i, jump);
-  // One jump may take a contact through several transitions: it may touch its dent and pass its largest overlap.
+  if (std::abs(change) <= k_snapped) return has_entered;
+  // A contact that unloads in the snap turns at the overlap that it had before.
+  const bool turns = change < 0.0 && p_.branch(i).touches() && p_.branch(i).edge.follows();
+  if (turns) p_.evaluate_contact(i, snap_.overlaps[i] - growth, growth);
+  p_.assume_rate(i, change);
+  // One snap may take a contact through several transitions: it may touch its dent and pass its largest overlap.
   std::size_t changes = 0;
   while (resolve_contact(i, xi, y, Motion{}, log)) {
     if (++changes > most_rounds()) throw DomainError(Limit::no_consistent_regimes);
@@ -474,9 +483,9 @@ ModeSearch::Tendency ModeSearch::tendency(std::size_t i, double xi, const Motion
   const double of_overlap = overlap_rate(p_, i, now);
   Tendency result;
   // At the very start of growth the rate of the radius is zero, and about to become positive.
-  result.is_carried = p_.mode.is_growing && !is_by_force && of_wall >= -k_zero_guard;
-  result.moves_in = of_overlap > k_zero_guard || result.is_carried;
-  const bool moves_out = of_overlap < -k_zero_guard && !result.is_carried;
+  result.is_pressed_by_growth = p_.mode.is_growing && !is_by_force && of_wall >= -k_zero_guard;
+  result.moves_in = of_overlap > k_zero_guard || result.is_pressed_by_growth;
+  const bool moves_out = of_overlap < -k_zero_guard && !result.is_pressed_by_growth;
   const bool is_shifted = p_.law().is_shifted();
   result.retreats = !p_.mode.loads_on[i] && (is_shifted ? of_wall < -k_zero_guard : moves_out);
   result.advances = is_shifted ? of_wall > k_zero_guard : result.moves_in;
@@ -487,8 +496,8 @@ ModeSearch::Tendency ModeSearch::tendency(std::size_t i, double xi, const Motion
   // A dent opens and closes at its own depth, which changes with the radius too.
   const bool is_dent = branch.regime == Regime::unloading || branch.regime == Regime::separated;
   const double of_dent = is_dent && !is_by_force ? edge_rate(p_, i, now) : of_overlap;
-  result.closes = of_dent > k_zero_guard || result.is_carried;
-  result.opens = of_dent < -k_zero_guard && !result.is_carried;
+  result.closes = of_dent > k_zero_guard || result.is_pressed_by_growth;
+  result.opens = of_dent < -k_zero_guard && !result.is_pressed_by_growth;
   return result;
 }
 
@@ -545,7 +554,7 @@ bool ModeSearch::resolve_elastic(std::size_t i, double xi, const Tendency& tends
   }
   if (branch.may_yield(p_.law()) && tends.moves_in &&
       -contact_guard(p_, k_yield, i, xi, overlap) <= nearness_of_yield(p_, i)) {
-    p_.set_branch(i, branch.yielded(p_.law(), p_.at().r));
+    p_.set_branch(i, branch.yielded(p_.law(), p_.at().growth));
     log.push_back(event_of("yield", i));
     return true;
   }
@@ -559,15 +568,15 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
   if (passed >= -k_zero_guard) {
     // The rate of a contact that has turned at this instant is round-off, of either sign: the contact does not reload.
     if (!has_turned_[i] || primary_branch_rate(p_, i, now) > k_at_rest || passed > k_zero_guard) {
-      has_resumed_[i] = has_turned_[i];
+      loads_again_[i] = has_turned_[i];
       p_.set_branch(i, p_.branch(i).reloaded());
       log.push_back(event_of("reload", i));
       return true;
     }
     // The reload guard cannot fire if the overlap is past the largest one by round-off.
-    if (passed > 0.0) p_.set_branch(i, p_.branch(i).with_largest(p_.law(), p_.at().r, overlap));
+    if (passed > 0.0) p_.set_branch(i, p_.branch(i).with_largest(p_.law(), p_.at().growth, overlap));
   }
-  if (p_.law().adheres()) return resolve_edge(i, xi, y, now, tends.is_carried, log);
+  if (p_.law().adheres()) return resolve_edge(i, xi, y, now, tends.is_pressed_by_growth, log);
   // A contact that no force presses during the whole step may end at once; it does not wait for growth to open it.
   const bool is_unloaded = p_.is_force_controlled(i) && p_.drive(i).start() <= 0.0 && p_.drive(i).end() <= 0.0;
   if ((tends.opens || is_unloaded) && contact_guard(p_, k_lost, i, xi, overlap) <= k_zero_guard) {
@@ -580,11 +589,11 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
 
 /// Corrects the edge of an adhesive contact below its largest overlap.
 /// @return whether anything changed
-bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
-                              std::vector<Event>& log) {
+bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now,
+                              bool is_pressed_by_growth, std::vector<Event>& log) {
   const double rate = edge_rate(p_, i, now);
-  const bool moves_in = rate > k_at_rest || is_carried;
-  const bool moves_out = rate < -k_at_rest && !is_carried;
+  const bool moves_in = rate > k_at_rest || is_pressed_by_growth;
+  const bool moves_out = rate < -k_at_rest && !is_pressed_by_growth;
   const double overlap = p_.contact(i).overlap;
   const auto is_past = [&](GuardKind kind, double sign) {
     return sign * edge_guard(p_, kind, i, xi, overlap) >= -k_zero_guard;
@@ -612,7 +621,7 @@ bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, con
         separate(i, y, log);
         return true;
       }
-      if (rate < 0.0 && !is_carried) return false;
+      if (rate < 0.0 && !is_pressed_by_growth) return false;
       stick(i, log);
       has_turned_[i] = true;
       return true;
@@ -623,7 +632,7 @@ bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, con
 // --- transitions
 
 void ModeSearch::start_unloading(std::size_t i, std::string_view why, std::vector<Event>& log) {
-  p_.set_branch(i, p_.branch(i).unloaded(p_.law(), p_.at().r, p_.contact(i).overlap));
+  p_.set_branch(i, p_.branch(i).unloaded(p_.law(), p_.at().growth, p_.contact(i).overlap));
   has_turned_[i] = true;
   log.push_back(event_of(why, i));
   if (!p_.law().adheres()) return;
@@ -656,15 +665,16 @@ void ModeSearch::separate(std::size_t i, std::span<double> y, std::vector<Event>
   if (p_.is_force_controlled(i)) {
     const Instant& now = p_.contact(i);
     // y counts the work less force times displacement, a term that an open contact no longer has: adds it to keep the
-    // work done so far. If the contact stores negative energy, the load has to supply at least that in the snap.
+    // work done so far, y[k_work] += n (F delta_w + max(0, -U)). If the contact stores negative energy U, the load has
+    // to supply at least that in the snap.
     const double supplied = std::max(0.0, -p_.energy(i, PlasticPart::recoverable));
-    y[k_work] += p_.count(i) * (now.contact.force * now.position + supplied);
+    y[k_work] += p_.count(i) * (now.contact.force * now.wall_displacement + supplied);
   }
   p_.set_branch(i, p_.branch(i).with_edge({}));
   p_.lose(i);
   log.push_back(event_of(is_touch ? "contact-lost" : "pull-off", i));
   if (!p_.centre().is_free()) return;
-  // A free centre springs away from the opened contact, which relieves the edges that peel elsewhere.
+  // A free centre snaps away from the opened contact, which relieves the edges that peel elsewhere.
   for (std::size_t j = 0; j < p_.size(); ++j) {
     if (p_.branch(j).edge.peels() && !p_.is_force_controlled(j)) stick(j, log);
   }

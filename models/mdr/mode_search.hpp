@@ -47,7 +47,7 @@ class ModeSearch {
  private:
   /// Motion that a contact is about to begin.
   struct Tendency {
-    bool is_carried = false;  ///< growth presses the contact, or is about to while its rate is still zero
+    bool is_pressed_by_growth = false;  ///< growth presses the contact, or is about to while its rate is still zero
     bool moves_in = false;
     bool retreats = false;    ///< leaves its largest overlap
     bool advances = false;    ///< towards its largest overlap, or beyond
@@ -56,12 +56,12 @@ class ModeSearch {
     bool opens = false;
   };
 
-  /// State from which a free centre springs to another equilibrium.
-  struct Spring {
+  /// State from which a free centre snaps to another equilibrium.
+  struct Snap {
     std::vector<ContactBranch> branches;
     std::vector<double> overlaps{};
-    std::size_t logged = 0;
-    std::size_t made = 0;
+    std::size_t log_size_before = 0;   ///< events of the log that are older than the snap
+    std::size_t made_size_before = 0;  ///< events of made_ that are older than the snap
   };
 
   [[nodiscard]] bool is_void(const Guard& guard, const Motion& now) const;
@@ -69,38 +69,43 @@ class ModeSearch {
   [[nodiscard]] std::optional<DomainEnd> end_of(const Guard& guard, ContactCaps& caps, std::vector<Event>& log);
   [[nodiscard]] bool is_extremum(const Guard& guard, const Motion& now) const;
 
-  [[nodiscard]] bool improve(double xi, std::span<double> y, std::vector<Event>& log);
-  void accept(double xi, std::span<double> y);
+  [[nodiscard]] bool settles(double xi, std::span<double> y, std::vector<Event>& log);
+  [[nodiscard]] bool correct_once(double xi, std::span<double> y, std::vector<Event>& log);
+  void freeze_mode(double xi, std::span<double> y);
   [[nodiscard]] bool wants_growth(double xi, std::span<double> y);
   void balance_anew(double xi, std::span<double> y, std::vector<Event>& log);
-  [[nodiscard]] bool follow_jump(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log);
+  [[nodiscard]] bool follow_snap(std::size_t i, double xi, std::span<double> y, std::vector<Event>& log);
 
   [[nodiscard]] Tendency tendency(std::size_t i, double xi, const Motion& now) const;
   bool resolve_contact(std::size_t i, double xi, std::span<double> y, const Motion& now, std::vector<Event>& log);
   bool resolve_elastic(std::size_t i, double xi, const Tendency& tends, std::vector<Event>& log);
   bool resolve_below_largest(std::size_t i, double xi, std::span<double> y, const Motion& now, const Tendency& tends,
                              std::vector<Event>& log);
-  bool resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_carried,
+  bool resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now, bool is_pressed_by_growth,
                     std::vector<Event>& log);
 
   void start_unloading(std::size_t i, std::string_view why, std::vector<Event>& log);
   void stick(std::size_t i, std::vector<Event>& log);
   void start_peeling(std::size_t i, std::span<double> y, std::vector<Event>& log);
   void separate(std::size_t i, std::span<double> y, std::vector<Event>& log);
-  /// Number of corrections after which the search concludes that no mode is consistent.
+  /// Number of corrections after which the search concludes that no mode is consistent. At one instant each contact
+  /// changes a few times at most, growth and centre once more; beyond that, contacts alternate.
   [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * p_.size() + 8; }
 
   Particle p_;
+  // What has happened to each contact at this instant. Neither resolve() nor a restart in it clears the first and the
+  // third; loads_again_ can thus only grow while resolve() searches.
   std::vector<bool> has_turned_;   ///< started to unload at this instant, or its edge came to rest
-  std::vector<bool> has_resumed_;  ///< started to unload at this instant, then loaded on beyond its largest overlap
+  std::vector<bool> loads_again_;  ///< started to unload at this instant, then loaded on beyond its largest overlap
   std::vector<bool> is_left_;      ///< lost at this instant, because forces press the centre away from its wall
   std::vector<Edge> edges_before_;
-  Spring spring_;
-  std::vector<Event> made_;     ///< contacts made in the search, which are logged at its end
-  std::optional<bool> growth_;  ///< what a growth guard has just decided; none: the sign of the demand decides
-  /// A force-controlled contact has just yielded: its force has jumped, and its wall has not given way yet. The volume
-  /// balance is frozen in this state; when the wall gives way the radius follows, and may fall a little.
-  bool has_jumped_ = false;
+  Snap snap_;
+  std::vector<Event> made_;             ///< contacts made in the search, which are logged at its end
+  std::optional<bool> decided_growth_;  ///< what a growth guard has just decided; none: the sign of the demand decides
+  /// A force-controlled contact has just yielded: its force has jumped, and its wall has not given way yet. The search
+  /// leaves centre and walls as they are, and freezes the volume balance in this state; when the wall gives way the
+  /// radius follows, and may fall a little.
+  bool has_yielded_under_force_ = false;
   bool radius_diverges_ = false;  ///< the radius would run away in a mode tried in this search
   std::optional<Diagnostic> validity_;
 };

@@ -38,16 +38,16 @@ System::System(std::shared_ptr<const Setup> setup)
 }
 
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
-  const Evaluation& at = now_.particle.evaluated(xi, y);
+  const Evaluation& at = now_.particle.at_state(xi, y);
   const double length = setup_->length_unit();
   const double force_unit = setup_->force_unit();
-  values[0] = (1.0 + at.r) * length;
+  values[0] = (1.0 + at.growth) * length;
   values[1] = 4.0 * pi / 3.0 * length * length * length * at.volume.volume_ratio();
   values = values.subspan(2);
   const auto row_of = [&](std::size_t i) -> contacts::VisibleContact {
     const Contact& c = visible_contact(i);
     const double area = pi * c.contact_radius * c.contact_radius;
-    return {.displacement = at.contacts[i].position * length,
+    return {.displacement = at.contacts[i].wall_displacement * length,
             .overlap = at.contacts[i].overlap * length,
             .force = c.force * force_unit,
             .contact_radius = c.contact_radius * length,
@@ -63,30 +63,31 @@ void System::observe(double xi, std::span<const double> y, std::span<double> val
   columns_.write(energies, now_.particle.size(), row_of, values);
   if (!setup_->settings.centre_is_free) return;
   const FreeCentre& centre = now_.particle.centre();
-  contacts::write_centre_columns(centre.in_space(centre_of(y, centre.count())) * length, values);
+  contacts::write_centre_columns(centre.in_space(centre_of(y, centre.free_directions())) * length, values);
 }
 
 /// The contact that a row of the history shows.
 const Contact& System::visible_contact(std::size_t i) const {
   static constexpr Contact none;
   const Instant& now = now_.particle.contact(i);
-  // The overlap is the sum of the displacement and the growth, which is no larger than |displacement| + |overlap|.
-  const double magnitude = 2.0 * std::abs(now.displacement) + std::abs(now.overlap);
-  const bool is_visible = now_.particle.branch(i).is_visible(setup_->law, now_.particle.at().r, now.overlap, magnitude);
+  // The overlap is the sum of the approach and the growth, which is no larger than |approach| + |overlap|.
+  const double magnitude = 2.0 * std::abs(now.approach) + std::abs(now.overlap);
+  const bool is_visible =
+      now_.particle.branch(i).is_visible(setup_->law, now_.particle.at().growth, now.overlap, magnitude);
   return is_visible ? now.contact : none;
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
-  now_.particle.evaluated(xi, y);
+  now_.particle.at_state(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
   const Contact& contact = visible_contact(i);
   const double length = setup_->length_unit();
   const double area = pi * contact.contact_radius * contact.contact_radius;
   return quantity_of({.force = contact.force * setup_->stress_unit() * length * length,
-                      .displacement = now_.particle.contact(i).position * length,
+                      .displacement = now_.particle.contact(i).wall_displacement * length,
                       .pressure = area > 0.0 ? contact.force / area * setup_->stress_unit() : 0.0,
                       .contact_radius = contact.contact_radius * length,
-                      .apparent_radius = (1.0 + y[k_radius]) * length},
+                      .apparent_radius = (1.0 + y[k_growth]) * length},
                      quantity);
 }
 
@@ -96,11 +97,11 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
   const ContactBranch& branch = now_.particle.branch(i);
   const double a = now_.particle.contact(i).contact.contact_radius;
   if (!branch.touches() || !(a > 0.0)) return {};
-  const Frame now = branch.frame(setup_->law, y[k_radius], now_.particle.contact(i).overlap);
+  const Image now = branch.image(setup_->law, y[k_growth], now_.particle.contact(i).overlap);
   std::vector<SurfacePoint> points = surface_of({.indenter = now.indenter,
                                                  .composite_modulus = setup_->law.material.composite_modulus,
                                                  .contact_radius = std::min(a, now.indenter.half_width),
-                                                 .displacement_1d = now.displacement});
+                                                 .displacement_1d = now.displacement_1d});
   for (SurfacePoint& point : points) {
     point.radius *= setup_->length_unit();
     point.pressure *= setup_->stress_unit();
@@ -113,7 +114,7 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
   if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
   now_.particle.evaluate(xi, y);
-  return now_.particle.contact(static_cast<std::size_t>(contact_class)).position * setup_->length_unit();
+  return now_.particle.contact(static_cast<std::size_t>(contact_class)).wall_displacement * setup_->length_unit();
 }
 
 std::vector<Diagnostic> System::warnings() const {

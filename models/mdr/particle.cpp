@@ -28,7 +28,7 @@ Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)
 
 void Particle::start() {
   mode.is_growing = false;
-  mode.held_radius = 0.0;
+  mode.held_growth = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     walls_.set_bears(i, true);
     branches_[i] = {};
@@ -59,46 +59,48 @@ void Particle::set_bears(std::size_t i, bool bears) {
 }
 
 const Evaluation& Particle::evaluate(double xi, std::span<const double> y) {
-  evaluate_forces(xi, y);
-  accept_volume(xi, y);
+  try_state(xi, y);
+  keep_trial(xi, y);
   return at_;
 }
 
-const Evaluation& Particle::evaluate_forces(double xi, std::span<const double> y) {
+const Evaluation& Particle::try_state(double xi, std::span<const double> y) {
   at_xi_ = k_nan;
-  at_.r = y[k_radius];
+  at_.growth = y[k_growth];
   at_.longest = 1.0;
-  for (int k = 0; k < centre().count(); ++k) at_.longest = std::max(at_.longest, std::abs(y[centre_index(k)]));
+  for (int k = 0; k < centre().free_directions(); ++k)
+    at_.longest = std::max(at_.longest, std::abs(y[centre_index(k)]));
   for (std::size_t i = 0; i < size(); ++i) {
-    const double carried = centre().moved_towards(i, y.subspan(k_centre));
-    const double wall = is_force_controlled(i) ? y[setup_->wall_index[i]] : walls_.position(i, xi);
-    at_.contacts[i].position = is_force_controlled(i) ? wall - carried : wall;
-    evaluate_contact(i, is_force_controlled(i) ? wall : wall + carried, at_.r);
+    const double by_centre = centre().approach_by_centre(i, y.subspan(k_centre));
+    // The unknown of a wall under force is its approach.
+    const double known = is_force_controlled(i) ? y[setup_->wall_index[i]] : walls_.displacement(i, xi);
+    at_.contacts[i].wall_displacement = is_force_controlled(i) ? known - by_centre : known;
+    evaluate_contact(i, is_force_controlled(i) ? known : known + by_centre, at_.growth);
   }
   sum_up(xi);
   return at_;
 }
 
-void Particle::accept_volume(double xi, std::span<const double> y) {
-  if (!(at_.volume.under_root > 0.0)) throw DomainError(Limit::half_volume);
+void Particle::keep_trial(double xi, std::span<const double> y) {
+  if (!(at_.volume.discriminant > 0.0)) throw DomainError(Limit::half_volume);
   at_xi_ = xi;
   at_revision_ = revision_;
   std::ranges::copy(y, at_y_.begin());
 }
 
-const Evaluation& Particle::evaluated(double xi, std::span<const double> y) {
-  bool is_same = at_xi_ == xi && at_revision_ == revision_ && at_y_[k_radius] == y[k_radius];
+const Evaluation& Particle::at_state(double xi, std::span<const double> y) {
+  bool is_same = at_xi_ == xi && at_revision_ == revision_ && at_y_[k_growth] == y[k_growth];
   for (std::size_t k = k_centre; is_same && k < y.size(); ++k) is_same = at_y_[k] == y[k];
   return is_same ? at_ : evaluate(xi, y);
 }
 
-void Particle::evaluate_contact(std::size_t i, double displacement, double r) {
+void Particle::evaluate_contact(std::size_t i, double approach, double growth) {
   at_xi_ = k_nan;
   force_round_off_.reset();
   Instant& now = at_.contacts[i];
-  now.displacement = displacement;
-  now.overlap = displacement + r;
-  now.contact = branches_[i].contact(law(), r, now.overlap);
+  now.approach = approach;
+  now.overlap = approach + growth;
+  now.contact = branches_[i].contact(law(), growth, now.overlap);
 }
 
 void Particle::assume_rate(std::size_t i, double rate) noexcept {
@@ -112,15 +114,15 @@ double Particle::force_work(std::span<const double> y) {
   double sum = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
     if (!is_force_controlled(i)) continue;
-    evaluate_contact(i, y[setup_->wall_index[i]], y[k_radius]);
-    const double position = contact(i).displacement - centre().moved_towards(i, y.subspan(k_centre));
-    sum += count(i) * contact(i).contact.force * position;
+    evaluate_contact(i, y[setup_->wall_index[i]], y[k_growth]);
+    const double wall_displacement = contact(i).approach - centre().approach_by_centre(i, y.subspan(k_centre));
+    sum += count(i) * contact(i).contact.force * wall_displacement;
   }
   return sum;
 }
 
 void Particle::sum_up(double xi) {
-  const double radius = 1.0 + at_.r;
+  const double radius = 1.0 + at_.growth;
   const bool is_free = centre().is_free();
   if (is_free) {
     at_.volume_by_centre.setZero();
@@ -129,7 +131,7 @@ void Particle::sum_up(double xi) {
   double virial_of_all = 0.0;
   double virial = 0.0;  // of the contacts that take part in the growth
   for (std::size_t i = 0; i < size(); ++i) {
-    const double one = count(i) * contact(i).contact.force * (1.0 - contact(i).displacement);
+    const double one = count(i) * contact(i).contact.force * (1.0 - contact(i).approach);
     virial_of_all += one;
     if (takes_part(i)) virial += one;
   }
@@ -145,19 +147,19 @@ void Particle::sum_up(double xi) {
     if (is_under_force) set_rates_under_force(i);
     if (!branches_[i].touches()) continue;
     if (is_under_force) {
-      power -= count(i) * now.position * speed;
-      force_work += count(i) * drive(i).value(xi) * now.position;
+      power -= count(i) * now.wall_displacement * speed;
+      force_work += count(i) * drive(i).value(xi) * now.wall_displacement;
     } else if (walls_.bears(i)) {
       power += count(i) * now.contact.force * speed;
     }
     if (is_free) load_centre(i);
     if (!takes_part(i)) continue;
-    const double by_displacement = volume.add(
-        {count(i), now.contact, now.displacement, now.overlap, now.rate_by_time, now.rate_by_growth}, radius);
-    if (is_free && !is_under_force) at_.volume_by_centre += by_displacement * centre().direction(i);
+    const double by_approach =
+        volume.add({count(i), now.contact, now.approach, now.overlap, now.rate_by_time, now.rate_by_growth}, radius);
+    if (is_free && !is_under_force) at_.volume_by_centre += by_approach * centre().mean_normal(i);
   }
   at_.energy.reset();
-  at_.volume = volume.balance(at_.r);
+  at_.volume = volume.finish(at_.growth);
   at_.power = power;
   at_.force_work = force_work;
   if (is_free) at_.centre.sum_up();
@@ -166,10 +168,10 @@ void Particle::sum_up(double xi) {
 void Particle::load_centre(std::size_t i) {
   const ContactBranch& branch = branches_[i];
   const Contact& c = contact(i).contact;
-  const double stiffness = branch.tangent_stiffness(law(), c);
+  const double stiffness = branch.regularized_stiffness(law(), c);
   const double speed = drive(i).rate();
   CentreLoad load{.count = count(i)};
-  if (!is_slight(i)) {
+  if (!is_negligible_and_unsupported(i)) {
     load.force = c.force;
     load.force_by_time = is_force_controlled(i) ? speed : stiffness * speed;
   }
@@ -177,26 +179,26 @@ void Particle::load_centre(std::size_t i) {
     double by_radius = c.by_radius;
     if (branch.regime == Regime::unloading && branch.edge.follows() && c.by_overlap < stiffness) {
       // The overlap at which a dent begins changes with the radius, even if the contact there bears next to nothing.
-      const Contact pressed = branch.stiff_contact(law(), at_.r, contact(i).overlap, c);
+      const Contact pressed = branch.stiff_contact(law(), at_.growth, contact(i).overlap, c);
       by_radius = stiffness * (pressed.by_radius / pressed.by_overlap);
     }
     load.force_by_radius = stiffness + by_radius;
     load.stiffness = c.by_overlap;
-    load.tangent_stiffness = stiffness;
+    load.regularized_stiffness = stiffness;
   }
   at_.centre.add(i, load);
 }
 
-/// Sets the derivatives of a force-controlled wall's displacement by xi and R; both are zero for a wall that stays. The
+/// Sets the derivatives of a force-controlled wall's approach by xi and R; both are zero for a wall that stays. The
 /// rate of a contact that is just being made has no bound: stiff_contact() limits it, which affects other contacts by
 /// less than round-off.
 void Particle::set_rates_under_force(std::size_t i) {
   Instant& now = at_.contacts[i];
   const ContactBranch& branch = branches_[i];
-  const Contact c = branch.stiff_contact(law(), at_.r, now.overlap, now.contact);
+  const Contact c = branch.stiff_contact(law(), at_.growth, now.overlap, now.contact);
   if (branch.edge.peels()) {
     // At pull-off the force no longer determines the displacement: the overlap hardly changes with the radius.
-    const Indenter indenter = branch.frame(law(), at_.r, now.overlap).indenter;
+    const Indenter indenter = branch.image(law(), at_.growth, now.overlap).indenter;
     const double critical = branch.pull_off(law(), indenter).by_force.contact_radius;
     if (c.contact_radius <= (1.0 + k_at_pull_off) * critical) {
       now.rate_by_growth = -1.0;
@@ -206,13 +208,13 @@ void Particle::set_rates_under_force(std::size_t i) {
   if (branch.touches() && c.by_overlap > 0.0) {
     now.rate_by_time = drive(i).rate() / c.by_overlap;
     now.rate_by_growth = -1.0 - c.by_radius / c.by_overlap;
-  } else if (branch.touches() || branch.resting >= branch.touching_overlap(law(), at_.r) - at_.r) {
+  } else if (branch.touches() || branch.resting >= branch.touching_overlap(law(), at_.growth) - at_.growth) {
     now.rate_by_growth = -1.0;  // without load the wall stays at the surface
   }
 }
 
 double Particle::energy(std::size_t i, PlasticPart part) const {
-  return branches_[i].energy(law(), at_.r, contact(i).overlap, contact(i).contact.contact_radius, part);
+  return branches_[i].energy(law(), at_.growth, contact(i).overlap, contact(i).contact.contact_radius, part);
 }
 
 double Particle::energy(PlasticPart part) {
@@ -234,7 +236,7 @@ Motion Particle::motion(bool growing) const {
   const VolumeBalance& volume = at_.volume;
   Motion result{.demand = -volume.by_time, .slope = volume.by_radius};
   if (!centre().is_free()) {
-    if (growing) result.growth = result.demand / result.slope;
+    if (growing) result.growth_rate = result.demand / result.slope;
     return result;
   }
   const CentreVector by_radius = centre().by_radius();
@@ -242,8 +244,8 @@ Motion Particle::motion(bool growing) const {
   result.demand -= at_.volume_by_centre.dot(result.centre);
   result.slope += at_.volume_by_centre.dot(by_radius);
   if (growing) {
-    result.growth = result.demand / result.slope;
-    result.centre += result.growth * by_radius;
+    result.growth_rate = result.demand / result.slope;
+    result.centre += result.growth_rate * by_radius;
   }
   return result;
 }
@@ -267,14 +269,16 @@ double Particle::force_round_off() const {
   if (force_round_off_) return *force_round_off_;
   double sum = magnitude_of_forces();
   for (std::size_t i = 0; i < size(); ++i) {
-    const double length = std::max(at_.longest, std::abs(contact(i).position));
-    sum += count(i) * branches_[i].unpeeled_stiffness(law(), at_.r, contact(i).contact) * length;
+    const double length = std::max(at_.longest, std::abs(contact(i).wall_displacement));
+    sum += count(i) * branches_[i].reference_stiffness(law(), at_.growth, contact(i).contact) * length;
   }
   return *(force_round_off_ = k_round_off * sum);
 }
 
 /// True for a prescribed force that is round-off beside the others and that no contact supports. Its load on the centre
 /// is left out: it would only push the centre off an idle wall, which then comes back.
-bool Particle::is_slight(std::size_t i) { return walls_.may_be_slight(i) && !is_supported(*this, i, 1.0, supports_); }
+bool Particle::is_negligible_and_unsupported(std::size_t i) {
+  return walls_.may_be_negligible(i) && !is_supported(*this, i, 1.0, supports_);
+}
 
 }  // namespace monograin::mdr

@@ -1,7 +1,7 @@
 /// The MDR particle in one mode, under one step of a program: its contacts and their sums at a state, and their rates.
 ///
-/// Lengths in R0; stresses in the yield stress (in E* where nothing yields). Source: Zunker and Kamrin (2024), stated
-/// as a continuous-time model: the published time-step recipe is its first-order explicit scheme.
+/// Lengths in R0, stresses in Y; growth = (R - R0)/R0. Source: Zunker and Kamrin (2024), stated as a continuous-time
+/// model: the published time-step recipe is its first-order explicit scheme.
 #pragma once
 
 #include <cstdint>
@@ -17,18 +17,18 @@ namespace monograin::mdr {
 
 /// One contact class at an instant.
 struct Instant {
-  double displacement = 0.0;  ///< displacement of the wall relative to the present centre
-  double position = 0.0;      ///< displacement of the wall towards the initial position of the centre
-  double overlap = 0.0;
+  double wall_displacement = 0.0;  ///< displacement of the wall, towards the initial position of the centre
+  double approach = 0.0;           ///< delta_o, relative to the present centre: wall_displacement + n.x of the centre
+  double overlap = 0.0;            ///< delta = approach + growth
   Contact contact;
-  double rate_by_time = 0.0;    ///< rate of the displacement with xi, at fixed R and centre
-  double rate_by_growth = 0.0;  ///< derivative of the displacement by R; 0 where the displacement is prescribed
+  double rate_by_time = 0.0;    ///< rate of the approach with xi, at fixed R and centre
+  double rate_by_growth = 0.0;  ///< derivative of the approach by R; 0 where the displacement is prescribed
 };
 
 /// All contacts at a state, and what they sum up to. Depends on the state, the program and the branches of the
 /// contacts.
 struct Evaluation {
-  double r = 0.0;
+  double growth = 0.0;   ///< (R - R0)/R0
   double longest = 1.0;  ///< largest of the lengths whose differences are overlaps: R0, path of the centre
   std::vector<Instant> contacts;
   VolumeBalance volume;
@@ -42,19 +42,21 @@ struct Evaluation {
 
 /// Rates of radius and centre with the step coordinate.
 struct Motion {
-  double demand = 0.0;  ///< rate of the volume (over 4 pi R0^3) that growth has to take up
-  double slope = 0.0;   ///< D_eff/(4 pi): growth rate = demand/slope
-  double growth = 0.0;  ///< dr/dxi
+  double demand = 0.0;       ///< rate with xi of the volume (over 4 pi R0^3) that growth has to take up
+  double slope = 0.0;        ///< D_eff/(4 pi): derivative of the volume (over 4 pi R0^3) by the growth
+  double growth_rate = 0.0;  ///< d(growth)/dxi = demand/slope; 0 while the radius is held
   CentreVector centre = CentreVector::Zero();
 
-  /// Share of the particle's surface that is free for growth while the walls move as the program prescribes.
-  [[nodiscard]] double free_surface(double r) const noexcept { return slope / ((1.0 + r) * (1.0 + r)); }
+  /// Share of the particle's surface that is free for growth while walls under force and a free centre move so that
+  /// forces balance: guard k_singular. VolumeBalance::free_surface_at_rest(), with walls and centre at rest, is that of
+  /// k_covered.
+  [[nodiscard]] double free_surface(double growth) const noexcept { return slope / ((1.0 + growth) * (1.0 + growth)); }
 };
 
 /// Equations that apply between two transitions.
 struct Mode {
   bool is_growing = false;
-  double held_radius = 0.0;                           ///< r while the radius is held
+  double held_growth = 0.0;                           ///< growth while the radius is held
   double frozen_balance = 0.0;                        ///< C, the volume balance while the radius grows
   CentreVector held_centre = CentreVector::Zero();    ///< position of a free centre where the mode began
   CentreMatrix unconstrained = CentreMatrix::Zero();  ///< projector on the directions in which no contact holds it
@@ -88,36 +90,37 @@ class Particle {
   [[nodiscard]] const std::vector<ContactBranch>& branches() const noexcept { return branches_; }
   void set_branch(std::size_t i, const ContactBranch& branch);
   /// Opens a contact: its wall leaves the particle or its dent, and stays where it is.
-  void lose(std::size_t i) { set_branch(i, branches_[i].lost(at_.contacts[i].displacement)); }
+  void lose(std::size_t i) { set_branch(i, branches_[i].lost(at_.contacts[i].approach)); }
   void set_branches(const std::vector<ContactBranch>& branches);
   [[nodiscard]] bool takes_part(std::size_t i) const noexcept {
     return mdr::takes_part(setup_->settings.radius_rule, branches_[i].regime);
   }
-  /// Sets whether a contact bears. A contact that no others balance does not: the search for the balance leaves it a
-  /// different force at every instant, which does no work.
+  /// Marks a contact whose push no other contact can balance as one that does not bear. In equilibrium its force is
+  /// zero; the search for the balance leaves it the round-off of other forces, which the power does not count.
   void set_bears(std::size_t i, bool bears);
 
   Mode mode{};
 
-  // Evaluation at a state.
+  // Evaluation at a state. at() shows the last one, and is cached for its state from evaluate() or keep_trial() on,
+  // until try_state() or a change of drives, branches, walls or single contacts.
 
-  /// Evaluates all contacts at a state, and their sums.
+  /// Evaluates all contacts at a state, and their sums, and caches the result.
   /// @throws std::domain_error where the volume of the particle is not defined
   const Evaluation& evaluate(double xi, std::span<const double> y);
-  /// evaluate() without the check that the volume of the particle is defined. Does not count as the cached evaluation.
-  const Evaluation& evaluate_forces(double xi, std::span<const double> y);
-  /// Makes the result of evaluate_forces() for this state the cached evaluation.
+  /// evaluate() for a trial state: without the check that the volume of the particle is defined, and not cached.
+  const Evaluation& try_state(double xi, std::span<const double> y);
+  /// Caches the result of try_state(), which has been called last and for this state.
   /// @throws std::domain_error where the volume of the particle is not defined
-  void accept_volume(double xi, std::span<const double> y);
+  void keep_trial(double xi, std::span<const double> y);
   /// The cached evaluation if it is for this state, or else evaluate().
-  const Evaluation& evaluated(double xi, std::span<const double> y);
+  const Evaluation& at_state(double xi, std::span<const double> y);
   [[nodiscard]] const Evaluation& at() const noexcept { return at_; }
   [[nodiscard]] const Instant& contact(std::size_t i) const noexcept { return at_.contacts[i]; }
   /// Sum of force times displacement of the contacts whose force is prescribed. Outdates the cached evaluation.
   [[nodiscard]] double force_work(std::span<const double> y);
-  /// Evaluates one contact at another displacement and radius, without the sums. Outdates the cached evaluation.
-  void evaluate_contact(std::size_t i, double displacement, double r);
-  /// Sets the rate of a wall at fixed R, for a jump whose end is known. Outdates the cached evaluation.
+  /// Evaluates one contact at another approach and growth, without the sums. Outdates the cached evaluation.
+  void evaluate_contact(std::size_t i, double approach, double growth);
+  /// Sets the rate of a wall at fixed R, for a snap whose end is known. Outdates the cached evaluation.
   void assume_rate(std::size_t i, double rate) noexcept;
   [[nodiscard]] double energy(std::size_t i, PlasticPart part) const;
   [[nodiscard]] double energy(PlasticPart part);
@@ -138,7 +141,7 @@ class Particle {
   void sum_up(double xi);
   void load_centre(std::size_t i);
   void set_rates_under_force(std::size_t i);
-  [[nodiscard]] bool is_slight(std::size_t i);
+  [[nodiscard]] bool is_negligible_and_unsupported(std::size_t i);
   /// Outdates cached results when drives, branches or walls change.
   void note_change() noexcept {
     ++revision_;
@@ -147,7 +150,7 @@ class Particle {
 
   std::shared_ptr<const Setup> setup_;
   Walls walls_;
-  std::vector<CentreVector> supports_;  ///< work space of is_slight()
+  std::vector<CentreVector> supports_;  ///< work space of is_negligible_and_unsupported()
   std::vector<ContactBranch> branches_;
   std::uint64_t revision_ = 0;  ///< counts changes of all that an evaluation depends on beside the state
   Evaluation at_;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "mdr/guards.hpp"
-#include "mdr/resolution.hpp"
+#include "mdr/idle.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
@@ -12,8 +12,8 @@ namespace monograin::mdr {
 namespace {
 
 /// Rate of a prescribed force less the force that growth takes away, over the sum of their magnitudes.
-double loaded_rate(const Particle& p, double loading, double by_radius, double growth) noexcept {
-  const double taken = by_radius * growth;
+double loaded_rate(const Particle& p, double loading, double by_radius, double growth_rate) noexcept {
+  const double taken = by_radius * growth_rate;
   const double scale = std::abs(loading) + std::abs(taken);
   if (scale > 0.0) return (loading - taken) / scale;
   // At the very start of growth the rate of the radius is zero, and about to become positive.
@@ -23,19 +23,19 @@ double loaded_rate(const Particle& p, double loading, double by_radius, double g
 }  // namespace
 
 double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  const double carried = p.is_force_controlled(i) ? 0.0 : p.centre().direction(i).dot(motion.centre);
-  return p.contact(i).rate_by_time + p.contact(i).rate_by_growth * motion.growth + carried;
+  const double carried = p.is_force_controlled(i) ? 0.0 : p.centre().mean_normal(i).dot(motion.centre);
+  return p.contact(i).rate_by_time + p.contact(i).rate_by_growth * motion.growth_rate + carried;
 }
 
 double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
   if (!p.is_force_controlled(i)) return inward_rate(p, i, motion) / p.walls().speed_scale();
   const Contact& c = p.contact(i).contact;
-  return loaded_rate(p, p.drive(i).rate(), c.by_overlap + c.by_radius, motion.growth);
+  return loaded_rate(p, p.drive(i).rate(), c.by_overlap + c.by_radius, motion.growth_rate);
 }
 
 double overlap_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  if (!p.is_force_controlled(i)) return (inward_rate(p, i, motion) + motion.growth) / p.walls().speed_scale();
-  return loaded_rate(p, p.drive(i).rate(), p.contact(i).contact.by_radius, motion.growth);
+  if (!p.is_force_controlled(i)) return (inward_rate(p, i, motion) + motion.growth_rate) / p.walls().speed_scale();
+  return loaded_rate(p, p.drive(i).rate(), p.contact(i).contact.by_radius, motion.growth_rate);
 }
 
 double primary_branch_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
@@ -44,31 +44,32 @@ double primary_branch_rate(const Particle& p, std::size_t i, const Motion& motio
 
 double edge_rate(const Particle& p, std::size_t i, const Motion& motion) {
   const Instant& now = p.contact(i);
-  double overlap_speed = inward_rate(p, i, motion) + motion.growth;
+  double overlap_speed = inward_rate(p, i, motion) + motion.growth_rate;
   // The rate of a force-controlled contact that is just being made has no bound: the sign of the force's rate decides,
   // however small that is, and growth does not count.
   const bool is_being_made = p.is_force_controlled(i) && !(now.contact.by_overlap > 0.0);
   if (is_being_made) overlap_speed = p.drive(i).rate();
-  if (is_being_made || motion.growth == 0.0) {
+  if (is_being_made || motion.growth_rate == 0.0) {
     // If a free centre keeps up with the wall, the difference of their speeds is round-off, of either sign.
     const double round_off =
         p.is_force_controlled(i) ? 0.0 : k_zero_guard * (std::abs(now.rate_by_time) + motion.centre.norm());
     return overlap_speed > round_off ? 1.0 : overlap_speed < -round_off ? -1.0 : 0.0;
   }
-  return p.branch(i).press_rate(p.law(), p.at().r, now.overlap, now.contact.contact_radius, overlap_speed,
-                                motion.growth);
+  return p.branch(i).press_rate(p.law(), p.at().growth, now.overlap, now.contact.contact_radius, overlap_speed,
+                                motion.growth_rate);
 }
 
 double force_rate(const Particle& p, std::size_t i, const Motion& motion) {
   const Contact& c = p.contact(i).contact;
-  const double scale = p.branch(i).unpeeled_stiffness(p.law(), p.at().r, c) * p.walls().speed_scale();
-  const double rate = c.by_overlap * (inward_rate(p, i, motion) + motion.growth) + c.by_radius * motion.growth;
+  const double scale = p.branch(i).reference_stiffness(p.law(), p.at().growth, c) * p.walls().speed_scale();
+  const double rate =
+      c.by_overlap * (inward_rate(p, i, motion) + motion.growth_rate) + c.by_radius * motion.growth_rate;
   return scale > 0.0 ? rate / scale : 0.0;
 }
 
 double rate_if_unloaded(Particle& p, std::size_t i, double xi, std::span<const double> y) {
   const ContactBranch before = p.branch(i);
-  p.set_branch(i, before.unloaded(p.law(), y[k_radius], p.contact(i).overlap));
+  p.set_branch(i, before.unloaded(p.law(), y[k_growth], p.contact(i).overlap));
   p.evaluate(xi, y);
   const double stiffer = std::max(1.0, p.contact(i).contact.by_overlap / p.law().plastic_stiffness());
   const double rate = stiffer * primary_branch_rate(p, i, p.motion(p.mode.is_growing));
@@ -111,7 +112,7 @@ bool has_greatest_force(const Particle& p, std::size_t i) noexcept {
   return p.is_force_controlled(i) && p.branch(i).regime == Regime::fully_plastic;
 }
 
-double stiffness_left(const Particle& p, std::size_t i) noexcept {
+double stiffness_over_initial(const Particle& p, std::size_t i) noexcept {
   return p.contact(i).contact.by_overlap / p.law().plastic_stiffness();
 }
 

@@ -9,12 +9,13 @@ namespace monograin::mdr {
 
 /// d(delta_o)/dxi of a wall, towards the centre positive.
 [[nodiscard]] double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
-/// Inward rate of a wall over speed_scale(), of order one. Under force control only its sign has a meaning: it is the
-/// rate of the prescribed force less the force that growth takes away, over the sum of their magnitudes.
+/// Inward rate of a wall over speed_scale(), of order one. Under force control, where this rate has no bound, a number
+/// from -1 to 1 with its sign: the rate of the prescribed force less that of the force that growth takes away, over the
+/// sum of their magnitudes.
 [[nodiscard]] double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
 /// Rate of the overlap, in the units of wall_rate().
 [[nodiscard]] double overlap_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
-/// Rate of the quantity that defines the largest overlap: the overlap itself, or the displacement of the wall with
+/// Rate of the quantity that defines the largest overlap: the overlap itself, or the approach of the wall with
 /// delta_max_rule = shifted.
 [[nodiscard]] double primary_branch_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
 /// Rate at which the springs at the edge of a contact are pressed (+) or stretched (-), of order one.
@@ -35,7 +36,7 @@ namespace monograin::mdr {
 
 /// True for a plastic contact under a prescribed force: at a given radius there is a largest force that it bears.
 [[nodiscard]] bool has_greatest_force(const Particle& p, std::size_t i) noexcept;
-/// Stiffness of a contact over ContactLaw::plastic_stiffness(), that of a shallow plastic contact.
-[[nodiscard]] double stiffness_left(const Particle& p, std::size_t i) noexcept;
+/// Tangent stiffness of a contact over ContactLaw::plastic_stiffness(), that of a shallow plastic contact.
+[[nodiscard]] double stiffness_over_initial(const Particle& p, std::size_t i) noexcept;
 
 }  // namespace monograin::mdr

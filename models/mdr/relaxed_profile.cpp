@@ -45,8 +45,6 @@ double slope_at(std::span<const double> x, std::span<const double> y, std::size_
       .prime(x[i]);
 }
 
-double weight_of(Control control) noexcept { return control == Control::force ? 3.0 : 1.0; }
-
 }  // namespace
 
 RelaxedProfile::RelaxedProfile(std::span<const double> radii, std::span<const double> heights) {
@@ -112,17 +110,17 @@ double free_force(const RelaxedProfile& profile, double composite_modulus, doubl
   return 2.0 * composite_modulus * (a * profile.image(a) - profile.image_area(a));
 }
 
-PeelState peel_state(const RelaxedProfile& profile, double composite_modulus, double surface_energy, double a) {
-  const double stretch = critical_stretch(composite_modulus, surface_energy, a);
+PeelState peel_state(const RelaxedProfile& profile, const Adhesion& adhesion, double a) {
+  const double stretch = critical_stretch(adhesion, a);
   return {.contact_radius = a,
           .displacement_1d = profile.image(a) - stretch,
-          .force = free_force(profile, composite_modulus, a) - 2.0 * composite_modulus * a * stretch};
+          .force = free_force(profile, adhesion.composite_modulus, a) - 2.0 * adhesion.composite_modulus * a * stretch};
 }
 
-double critical_radius(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
-                       Control control) {
-  // (g1D' - xi Dl') sqrt(a), where the root keeps it finite at the axis: positive where the edge is stable.
-  const double stretch_slope = weight_of(control) * std::sqrt(0.5 * pi * surface_energy / composite_modulus);
+double critical_radius(const RelaxedProfile& profile, const Adhesion& adhesion, Control control) {
+  // (g1D' - control_factor Dl') sqrt(a), where the root keeps it finite at the axis: positive where the edge is stable.
+  const double stretch_slope =
+      control_factor(control) * std::sqrt(0.5 * pi * adhesion.surface_energy / adhesion.composite_modulus);
   const auto stability = [&](double a) { return std::sqrt(a) * profile.image_slope(a) - stretch_slope; };
 
   double outer = profile.largest_radius();
@@ -145,22 +143,20 @@ double critical_radius(const RelaxedProfile& profile, double composite_modulus, 
   return 0.0;
 }
 
-PeelState pull_off_state(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
-                         Control control) {
-  return peel_state(profile, composite_modulus, surface_energy,
-                    critical_radius(profile, composite_modulus, surface_energy, control));
+PeelState pull_off_state(const RelaxedProfile& profile, const Adhesion& adhesion, Control control) {
+  return peel_state(profile, adhesion, critical_radius(profile, adhesion, control));
 }
 
-std::vector<PeelState> peel_curve(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
-                                  Control control, std::size_t count) {
+std::vector<PeelState> peel_curve(const RelaxedProfile& profile, const Adhesion& adhesion, Control control,
+                                  std::size_t count) {
   if (count < 2) throw std::invalid_argument("a curve needs at least two states");
-  const double critical = critical_radius(profile, composite_modulus, surface_energy, control);
+  const double critical = critical_radius(profile, adhesion, control);
   std::vector<PeelState> curve;
   curve.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double a =
         std::lerp(profile.largest_radius(), critical, static_cast<double>(i) / static_cast<double>(count - 1));
-    curve.push_back(peel_state(profile, composite_modulus, surface_energy, a));
+    curve.push_back(peel_state(profile, adhesion, a));
   }
   return curve;
 }

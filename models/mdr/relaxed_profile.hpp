@@ -1,4 +1,5 @@
-/// Adhesive contact with a measured or computed relaxed profile, which need not be convex.
+/// Adhesive contact with a measured or computed relaxed profile, which need not be convex. Only the Python package uses
+/// it; runs know convex indenters alone.
 ///
 /// The profile of a strongly flattened particle is concave in the middle and convex at the edge. Once its whole disc
 /// has been closed by compression, the contact stays compact: its edge recedes in equilibrium and turns unstable
@@ -59,26 +60,23 @@ class RelaxedProfile {
 [[nodiscard]] double free_force(const RelaxedProfile& profile, double composite_modulus, double a);
 
 /// State of an edge in equilibrium at the radius a (eq. 14). Throws as free_force() does.
-[[nodiscard]] PeelState peel_state(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
-                                   double a);
+[[nodiscard]] PeelState peel_state(const RelaxedProfile& profile, const Adhesion& adhesion, double a);
 
-/// Contact radius at pull-off: the outermost root of g1D' = xi Dl' (eq. 15), 0 where there is none.
+/// Contact radius at pull-off: the outermost root of g1D' = control_factor() Dl' (eq. 15), 0 where there is
+/// none.
 ///
 /// The search has the resolution of the samples: it misses two roots between neighbouring samples.
-/// @param surface_energy  dg >= 0; 0 gives the radius of the outermost minimum of the image
-/// @param control         xi = 1 under displacement, 3 under force control
+/// @param adhesion  without surface energy the root is the outermost minimum of the image
 /// @throws std::domain_error where the edge is unstable from a_max on: the profile has to be known further out
-[[nodiscard]] double critical_radius(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
-                                     Control control);
+[[nodiscard]] double critical_radius(const RelaxedProfile& profile, const Adhesion& adhesion, Control control);
 
 /// State at pull-off. Under force control its force is the least of all states, -F_c. Throws as critical_radius() does.
-[[nodiscard]] PeelState pull_off_state(const RelaxedProfile& profile, double composite_modulus, double surface_energy,
-                                       Control control);
+[[nodiscard]] PeelState pull_off_state(const RelaxedProfile& profile, const Adhesion& adhesion, Control control);
 
 /// Stable states from a_max down to pull-off, both included, at equal distances of the contact radius.
 /// @param count  number of states, >= 2
 /// @throws std::invalid_argument for a count below 2; std::domain_error as critical_radius()
-[[nodiscard]] std::vector<PeelState> peel_curve(const RelaxedProfile& profile, double composite_modulus,
-                                                double surface_energy, Control control, std::size_t count);
+[[nodiscard]] std::vector<PeelState> peel_curve(const RelaxedProfile& profile, const Adhesion& adhesion,
+                                                Control control, std::size_t count);
 
 }  // namespace monograin::mdr

@@ -11,14 +11,14 @@ namespace monograin::mdr {
 
 using std::numbers::pi;
 
-CentreVector centre_of(std::span<const double> y, int free_count) noexcept {
+CentreVector centre_of(std::span<const double> y, int free_directions) noexcept {
   CentreVector centre = CentreVector::Zero();
-  for (int k = 0; k < free_count; ++k) centre[k] = y[centre_index(k)];
+  for (int k = 0; k < free_directions; ++k) centre[k] = y[centre_index(k)];
   return centre;
 }
 
-void set_centre(std::span<double> y, int free_count, const CentreVector& centre) noexcept {
-  for (int k = 0; k < free_count; ++k) y[centre_index(k)] = centre[k];
+void set_centre(std::span<double> y, int free_directions, const CentreVector& centre) noexcept {
+  for (int k = 0; k < free_directions; ++k) y[centre_index(k)] = centre[k];
 }
 
 Setup::Setup(const Settings& given, std::vector<ContactClass> contact_classes)
@@ -34,7 +34,7 @@ Setup::Setup(const Settings& given, std::vector<ContactClass> contact_classes)
   law.continues_off_branch = centre.is_free();
   for (const ContactClass& c : classes) counts.push_back(c.multiplicity());
   takes_forces = std::ranges::any_of(classes, &ContactClass::takes_force);
-  std::size_t next = centre_index(centre.count());
+  std::size_t next = centre_index(centre.free_directions());
   for (const ContactClass& c : classes) wall_index.push_back(c.takes_force ? next++ : 0);
 }
 
@@ -43,7 +43,7 @@ std::vector<Unknown> Setup::unknowns() const {
   std::vector<Unknown> list{
       {.name = "apparent radius growth (R - R0)/R0", .scale = growth_scale(reach), .is_algebraic_in_residual = true},
       {.name = "work", .kind = Unknown::Kind::quadrature, .scale = work_scale(reach)}};
-  for (int k = 0; k < centre.count(); ++k) {
+  for (int k = 0; k < centre.free_directions(); ++k) {
     list.push_back({.name = contacts::k_centre_unknowns[static_cast<std::size_t>(k)],
                     .kind = Unknown::Kind::algebraic,
                     .scale = reach,

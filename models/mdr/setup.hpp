@@ -1,9 +1,10 @@
 /// Constants of a run of the MDR particle: settings, law and units, contact classes, and the unknowns in y.
 ///
-/// Unknowns: r = (R - R0)/R0, the work of the walls, the displacement of a free centre along the directions in which
-/// walls can move it, and the displacement of every wall whose force is prescribed at some time. Where a force is
-/// prescribed, the unknown is the work less force times displacement, -int delta_o dF: unlike int F d(delta_o), this
-/// has no singularity where a contact is made or snaps off. Lengths in R0; stresses in Y.
+/// Unknowns: growth = (R - R0)/R0, the work of the walls, the displacement of a free centre along the directions in
+/// which walls can move it, and the approach delta_o of every wall whose force is prescribed at some time. Where a
+/// force is prescribed, the unknown is the work less force times displacement, -int delta_o dF: unlike int F
+/// d(delta_o), this has no singularity where a contact is made or snaps off. System::begin_step() changes from one to
+/// the other. Lengths in R0; stresses in Y.
 #pragma once
 
 #include <algorithm>
@@ -37,13 +38,13 @@ struct Settings {
 };
 
 // Indices of the unknowns in y.
-inline constexpr std::size_t k_radius = 0;  ///< r = (R - R0)/R0
+inline constexpr std::size_t k_growth = 0;  ///< (R - R0)/R0
 inline constexpr std::size_t k_work = 1;
 inline constexpr std::size_t k_centre = 2;  ///< first free direction of the centre; the others follow
 [[nodiscard]] constexpr std::size_t centre_index(int k) noexcept { return k_centre + static_cast<std::size_t>(k); }
 /// Displacement of the centre in a state.
-[[nodiscard]] CentreVector centre_of(std::span<const double> y, int free_count) noexcept;
-void set_centre(std::span<double> y, int free_count, const CentreVector& centre) noexcept;
+[[nodiscard]] CentreVector centre_of(std::span<const double> y, int free_directions) noexcept;
+void set_centre(std::span<double> y, int free_directions, const CentreVector& centre) noexcept;
 
 /// Constants of a run.
 struct Setup {
@@ -52,17 +53,18 @@ struct Setup {
   Settings settings;
   ContactLaw law;  ///< stresses over Y, lengths over R0
   std::vector<ContactClass> classes;
-  std::vector<double> counts;           ///< walls of each class
-  bool takes_forces = false;            ///< whether any class is ever under force control
-  FreeCentre centre;                    ///< without loads
-  std::vector<std::size_t> wall_index;  ///< index in y of the displacement of each class that takes a force; else 0
+  std::vector<double> counts;  ///< walls of each class
+  bool takes_forces = false;   ///< whether any class is ever under force control
+  FreeCentre centre;           ///< without loads
+  std::vector<std::size_t>
+      wall_index;  ///< index in y of the approach of each class that takes a force; not used (0) for others
 
   [[nodiscard]] double length_unit() const noexcept { return settings.initial_radius; }
   [[nodiscard]] double stress_unit() const noexcept { return settings.yield_stress; }
   [[nodiscard]] double force_unit() const noexcept { return stress_unit() * length_unit() * length_unit(); }
   [[nodiscard]] std::vector<Unknown> unknowns() const;
   [[nodiscard]] std::size_t unknown_count() const noexcept {
-    return centre_index(centre.count()) +
+    return centre_index(centre.free_directions()) +
            static_cast<std::size_t>(std::ranges::count_if(classes, &ContactClass::takes_force));
   }
   /// Largest displacement that the program leads to at any wall, over R0 and at most 1; 1 where it is not known.

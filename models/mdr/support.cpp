@@ -12,8 +12,8 @@
 #include "contacts/centre/reaction_cone.hpp"
 #include "mdr/equilibrium.hpp"
 #include "mdr/guards.hpp"
+#include "mdr/idle.hpp"
 #include "mdr/rates.hpp"
-#include "mdr/resolution.hpp"
 #include "system/limit.hpp"
 #include "system/resolution.hpp"
 
@@ -99,9 +99,9 @@ bool may_be_supported(const Particle& p, std::size_t i) {
   for (std::size_t j = 0; j < p.size(); ++j) {
     if (j == i || !p.centre().acts(j)) continue;
     if (!p.branch(j).touches() && (p.is_force_controlled(j) || distance_to_touch(p, j) > k_together)) continue;
-    others.push_back(p.centre().direction(j).normalized());
+    others.push_back(p.centre().mean_normal(j).normalized());
   }
-  return in_reaction_cone(p.centre().direction(i), others);
+  return in_reaction_cone(p.centre().mean_normal(i), others);
 }
 
 /// The contact that closes or opens together with contact i: among those within the integration error (k_together) of
@@ -126,8 +126,8 @@ bool idle_contacts_have_to_bear(const Particle& p, double xi) {
   std::vector<CentreVector> bearing;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!p.branch(i).touches() || p.is_force_controlled(i) || is_idle(p, i) || !p.centre().acts(i)) continue;
-    bearing.push_back(p.centre().direction(i).normalized());
-    if (!p.branch(i).edge.follows()) bearing.emplace_back(-p.centre().direction(i).normalized());
+    bearing.push_back(p.centre().mean_normal(i).normalized());
+    if (!p.branch(i).edge.follows()) bearing.emplace_back(-p.centre().mean_normal(i).normalized());
   }
   const double least = k_no_net_force * largest_prescribed_force(p);
   const auto is_borne = [&](const CentreVector& push) {
@@ -145,12 +145,12 @@ std::optional<CentreVector> velocity_of(Particle& p, std::span<IdleWall> walls, 
   const Motion now = p.motion(p.mode.is_growing);
   for (IdleWall& wall : walls) wall.rate = overlap_rate(p, wall.contact, now);
   std::vector<contacts::Obstacle> moving;
-  for (const IdleWall& wall : walls) moving.push_back({wall.contact, p.centre().direction(wall.contact), wall.rate});
+  for (const IdleWall& wall : walls) moving.push_back({wall.contact, p.centre().mean_normal(wall.contact), wall.rate});
   const auto enters = [](const contacts::Obstacle& wall, const CentreVector& velocity) {
     return !(wall.overlap(velocity) <= k_zero_guard * (1.0 + velocity.norm()));
   };
   CentreVector velocity = CentreVector::Zero();
-  const bool is_free = contacts::clear(moving, unconstrained_directions(p), k_no_direction, enters, velocity);
+  const bool is_free = contacts::project_out_of(moving, unconstrained_directions(p), k_no_direction, enters, velocity);
   p.set_branches(before);
   p.evaluate(xi, y);
   return is_free ? std::optional(velocity) : std::nullopt;
@@ -172,7 +172,7 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
   // Holds only where forces begin, at the start of a step: after any force, walls may have caught up with the centre.
   if (xi > 0.0 || (along * prescribed_push(p, xi)).norm() > p.force_round_off()) return false;
   std::vector<CentreVector> normals;
-  for (const IdleWall& wall : walls) normals.emplace_back(along * p.centre().direction(wall.contact));
+  for (const IdleWall& wall : walls) normals.emplace_back(along * p.centre().mean_normal(wall.contact));
   std::vector<CentreVector> units;
   for (const CentreVector& normal : normals) {
     if (normal.norm() > k_no_direction) units.push_back(normal.normalized());
@@ -181,7 +181,7 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
   std::vector<double> weights;
   for (const IdleWall& wall : walls)
     weights.push_back(p.count(wall.contact) *
-                      p.branch(wall.contact).tangent_stiffness(p.law(), p.contact(wall.contact).contact));
+                      p.branch(wall.contact).regularized_stiffness(p.law(), p.contact(wall.contact).contact));
   const std::vector<double> overlaps = overlaps_under_push(push, normals, weights);
   bool has_left = false;
   for (std::size_t k = 0; k < walls.size(); ++k) {
@@ -206,10 +206,10 @@ bool is_supported(const Particle& p, std::size_t i, double side, std::vector<Cen
   others.clear();
   for (std::size_t j = 0; j < p.size(); ++j) {
     if (j == i || !p.branch(j).touches() || !p.centre().acts(j)) continue;
-    others.push_back(p.centre().direction(j).normalized());
-    if (!p.branch(j).edge.follows()) others.emplace_back(-p.centre().direction(j).normalized());
+    others.push_back(p.centre().mean_normal(j).normalized());
+    if (!p.branch(j).edge.follows()) others.emplace_back(-p.centre().mean_normal(j).normalized());
   }
-  return in_reaction_cone(side * p.centre().direction(i), others);
+  return in_reaction_cone(side * p.centre().mean_normal(i), others);
 }
 
 CentreMatrix unconstrained_directions(Particle& p) {
@@ -220,7 +220,7 @@ CentreVector prescribed_push(const Particle& p, double xi) noexcept {
   CentreVector sum = CentreVector::Zero();
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!p.is_force_controlled(i) || !p.branch(i).touches()) continue;
-    sum += p.count(i) * p.drive(i).value(xi) * p.centre().direction(i);
+    sum += p.count(i) * p.drive(i).value(xi) * p.centre().mean_normal(i);
   }
   return sum;
 }
@@ -258,14 +258,15 @@ void carry_to_support(Particle& p, double xi, std::span<double> y, std::vector<E
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.is_force_controlled(i) || !p.centre().acts(i)) continue;
     const ContactBranch& branch = p.branch(i);
-    walls.push_back({i, p.centre().direction(i), p.contact(i).overlap - branch.touching_overlap(p.law(), p.at().r)});
+    walls.push_back(
+        {i, p.centre().mean_normal(i), p.contact(i).overlap - branch.touching_overlap(p.law(), p.at().growth)});
     touched.push_back(branch.touches());
   }
   // Overlaps are those at the present position of the centre.
   std::vector<char> touches = touched;
   const auto moved = contacts::carried_to_support(push, walls, touches, CentreVector::Zero());
   if (!moved || touches == touched) return;
-  const int count = p.centre().count();
+  const int count = p.centre().free_directions();
   set_centre(y, count, centre_of(y, count) + *moved);
   p.evaluate(xi, y);
   for (std::size_t k = 0; k < walls.size(); ++k) {
@@ -322,7 +323,7 @@ bool lose_idle_contacts(Particle& p, double xi, std::span<const double> y, std::
   bool has_left = false;
   for (const IdleWall& wall : walls) {
     const std::size_t i = wall.contact;
-    if (!(wall.rate + p.centre().direction(i).dot(*velocity) < least)) continue;
+    if (!(wall.rate + p.centre().mean_normal(i).dot(*velocity) < least)) continue;
     p.lose(i);
     log.push_back({"contact-lost", static_cast<int>(i)});
     has_left = true;

@@ -25,7 +25,8 @@ namespace monograin::mdr {
 /// in which no touching wall under displacement control constrains the centre
 void check_support(Particle& p);
 
-/// Moves a loose particle with the walls whose forces begin to press it, to walls that support these forces. No force
+/// Moves a loose particle with the walls whose forces begin to press it, to walls that support these forces, as
+/// contacts::carried_to_support() finds them, and changes the contacts that open or close on the path. No force
 /// resists the motion, which therefore takes no time. On its path the centre slides along walls that it touches.
 /// Does nothing if a contact bears, if no wall is in the path, or at xi > 0: forces begin with a step.
 /// @param y  receives the centre

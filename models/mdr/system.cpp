@@ -91,7 +91,7 @@ void System::stick_under_force(std::span<const double> y, std::vector<Event>& lo
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!p.is_force_controlled(i) || !p.branch(i).edge.peels()) continue;
     const Instant& now = p.evaluate(0.0, y).contacts[i];
-    const Indenter indenter = p.branch(i).frame(p.law(), y[k_radius], now.overlap).indenter;
+    const Indenter indenter = p.branch(i).image(p.law(), y[k_growth], now.overlap).indenter;
     const double critical = p.branch(i).pull_off(p.law(), indenter).by_force.contact_radius;
     const double rate = p.drive(i).rate();
     const double at_rest = k_same_value * p.drive(i).size();
@@ -133,9 +133,9 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
 
 /// Reason to stop if a wall already stands at the centre and goes on from there, which fires no guard.
 std::optional<DomainEnd> System::reach_centre_at_once(double xi, std::span<const double> y) {
-  const Evaluation& at = now_.particle.evaluated(xi, y);
+  const Evaluation& at = now_.particle.at_state(xi, y);
   for (std::size_t i = 0; i < now_.particle.size(); ++i) {
-    if (1.0 - at.contacts[i].displacement > k_least_distance) continue;
+    if (1.0 - at.contacts[i].approach > k_least_distance) continue;
     const Motion now = now_.particle.motion(now_.particle.mode.is_growing);
     if (wall_rate(now_.particle, i, now) > k_at_rest) return centre_reached(static_cast<int>(i));
   }
@@ -154,17 +154,17 @@ std::optional<Difficulty> System::difficulty(double xi, std::span<const double> 
 void System::complete(double xi, std::span<double> y) { mdr::complete(now_.particle, xi, y); }
 
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
-  const Evaluation& at = now_.particle.evaluated(xi, y);
-  dy[k_radius] = now_.particle.mode.is_growing ? now_.particle.growing_motion().growth : 0.0;
+  const Evaluation& at = now_.particle.at_state(xi, y);
+  dy[k_growth] = now_.particle.mode.is_growing ? now_.particle.growing_motion().growth_rate : 0.0;
   dy[k_work] = at.power;
 }
 
 void System::all_rates(double xi, std::span<const double> y, std::span<double> dy) {
   const Evaluation& at = now_.particle.evaluate(xi, y);
   const Motion now = now_.particle.mode.is_growing ? now_.particle.growing_motion() : now_.particle.motion(false);
-  dy[k_radius] = now.growth;
+  dy[k_growth] = now.growth_rate;
   dy[k_work] = at.power;
-  set_centre(dy, now_.particle.centre().count(), now.centre);
+  set_centre(dy, now_.particle.centre().free_directions(), now.centre);
   for (std::size_t i = 0; i < now_.particle.size(); ++i) {
     if (setup_->classes[i].takes_force) dy[setup_->wall_index[i]] = inward_rate(now_.particle, i, now);
   }
@@ -174,7 +174,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   // Centre and walls under force are evaluated in equilibrium for the radius in y, so that their singular rows do not
   // couple to the others. Along unconstrained directions the centre stays where it was when the mode began.
   const Mode& mode = now_.particle.mode;
-  const int count = now_.particle.centre().count();
+  const int count = now_.particle.centre().free_directions();
   std::ranges::copy(y, trial_.begin());
   for (int k = 0; k < count; ++k) {
     for (int j = 0; j < count; ++j) {
@@ -185,7 +185,7 @@ void System::residual(double xi, std::span<const double> y, std::span<const doub
   const Evaluation& at = now_.particle.evaluate(xi, trial_);
   // Throws where growth would run away, as rates() does: no balance exists beyond.
   if (mode.is_growing) static_cast<void>(now_.particle.growing_motion());
-  res[k_radius] = mode.is_growing ? at.volume.value - mode.frozen_balance : y[k_radius] - mode.held_radius;
+  res[k_growth] = mode.is_growing ? at.volume.value - mode.frozen_balance : y[k_growth] - mode.held_growth;
   res[k_work] = dy[k_work] - at.power;
   for (std::size_t k = k_centre; k < unknowns_.size(); ++k) res[k] = y[k] - trial_[k];
 }
@@ -203,13 +203,13 @@ double System::next_kink(double after, double xi, std::span<const double> y) {
   const PressureCurve* curve = setup_->law.material.pressure_curve.get();
   if (curve == nullptr) return k_infinity;
   Particle& p = now_.particle;
-  const Evaluation& at = p.evaluated(xi, y);
+  const Evaluation& at = p.at_state(xi, y);
   const Motion now = p.motion(p.mode.is_growing);
   double first = k_infinity;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.branch(i).regime != Regime::fully_plastic || !p.branch(i).is_on_primary_branch) continue;
-    const double ratio = at.contacts[i].overlap / (1.0 + at.r);
-    const double rate = (inward_rate(p, i, now) + (1.0 - ratio) * now.growth) / (1.0 + at.r);
+    const double ratio = at.contacts[i].overlap / (1.0 + at.growth);
+    const double rate = (inward_rate(p, i, now) + (1.0 - ratio) * now.growth_rate) / (1.0 + at.growth);
     if (rate == 0.0) continue;
     first = std::min(first, xi + (curve->knot_beyond(ratio + rate * (after - xi), rate) - ratio) / rate);
   }
@@ -218,13 +218,8 @@ double System::next_kink(double after, double xi, std::span<const double> y) {
 
 std::optional<double> System::closed_quadrature(double xi, std::span<const double> y) {
   if (now_.particle.mode.is_growing) return std::nullopt;
-  const double force_work = now_.particle.evaluated(xi, y).force_work;
+  const double force_work = now_.particle.at_state(xi, y).force_work;
   return now_.particle.energy(PlasticPart::work_done) - force_work;
-}
-
-double System::balance_residual(double xi, std::span<const double> y) {
-  const Evaluation& at = now_.particle.evaluate(xi, y);
-  return now_.particle.mode.is_growing ? at.volume.value - now_.particle.mode.frozen_balance : 0.0;
 }
 
 }  // namespace monograin::mdr

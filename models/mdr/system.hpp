@@ -55,9 +55,6 @@ class System final : public HybridSystem {
   [[nodiscard]] std::optional<Difficulty> difficulty(double xi, std::span<const double> y) override;
   [[nodiscard]] std::vector<Diagnostic> warnings() const override;
 
-  /// Volume balance V_geo,Q - V_Q - C over 4 pi R0^3, the drift of an integrated solution; 0 while the radius is held.
-  [[nodiscard]] double balance_residual(double xi, std::span<const double> y);
-
  private:
   /// Everything that changes in a run.
   struct State {

@@ -1,4 +1,5 @@
-/// Transforms between an axisymmetric contact and its one-dimensional image, for arbitrary profiles.
+/// Transforms between an axisymmetric contact and its one-dimensional image, for arbitrary profiles. Only the Python
+/// package uses them; runs have closed forms.
 ///
 /// Profiles, displacements and pressures are callables of the distance from the axis, r in space and x in the image;
 /// they are even functions, and are only called for arguments >= 0. The substitutions below take the square roots out

@@ -14,7 +14,7 @@ void Walls::set_drives(const Setup& setup, std::span<const Ramp> ramps) {
   }
   for (std::size_t i = 0; i < walls_.size(); ++i) {
     const double force = is_force_controlled(i) ? setup.counts[i] * walls_[i].drive.size() : 0.0;
-    walls_[i].may_be_slight = setup.centre.acts(i) && force > 0.0 && force <= k_no_net_force * largest;
+    walls_[i].may_be_negligible = setup.centre.acts(i) && force > 0.0 && force <= k_no_net_force * largest;
   }
 }
 

@@ -19,22 +19,22 @@ class Walls {
   /// Largest rate of a wall under displacement control; 1 where none moves.
   [[nodiscard]] double speed_scale() const noexcept;
   /// Prescribed displacement of a wall towards the initial position of the centre.
-  [[nodiscard]] double position(std::size_t i, double xi) const noexcept {
+  [[nodiscard]] double displacement(std::size_t i, double xi) const noexcept {
     // As exact as std::lerp, which takes longer than the rest of an evaluation.
     const contacts::WallDrive& drive = walls_[i].drive;
     return xi == 1.0 ? drive.end() : drive.start() + xi * drive.rate();
   }
 
-  /// False for a contact that no others balance: it does no work.
+  /// False for a contact whose push no others can balance: its force is round-off, which the power does not count.
   [[nodiscard]] bool bears(std::size_t i) const noexcept { return walls_[i].bears; }
   void set_bears(std::size_t i, bool bears) noexcept { walls_[i].bears = bears; }
   /// True for a prescribed force that is round-off beside the others during the whole step.
-  [[nodiscard]] bool may_be_slight(std::size_t i) const noexcept { return walls_[i].may_be_slight; }
+  [[nodiscard]] bool may_be_negligible(std::size_t i) const noexcept { return walls_[i].may_be_negligible; }
 
  private:
   struct Wall {
     contacts::WallDrive drive;
-    bool may_be_slight = false;
+    bool may_be_negligible = false;
     bool bears = true;
   };
   std::vector<Wall> walls_;

@@ -29,7 +29,7 @@ bool leaves_forces(Contacts& contacts, const Eigen::Matrix3d& projector, std::sp
   double sum = 0.0;
   for (std::size_t j = 0; j < targets.size(); ++j) {
     sum += contacts.weight(j) * at.forces[j];
-    if (targets[j].is_force) push += contacts.weight(j) * targets[j].value * contacts.arm(j);
+    if (targets[j].is_force) push += contacts.weight(j) * targets[j].value * contacts.mean_normal(j);
   }
   return (projector * push).norm() > k_round_off * sum;
 }
@@ -49,7 +49,7 @@ bool CentreSearch::clear_all(const Contacts& contacts, std::span<const Target> t
   obstacles_.clear();
   for (std::size_t j = 0; j < targets.size(); ++j) {
     if (targets[j].is_force && targets[j].value != 0.0) return false;
-    if (!targets[j].is_force) obstacles_.push_back({j, contacts.arm(j), targets[j].value});
+    if (!targets[j].is_force) obstacles_.push_back({j, contacts.mean_normal(j), targets[j].value});
   }
   Eigen::Vector3d centre = contacts.centre_of(y);
   if (!release_centre(obstacles_, Eigen::Matrix3d::Identity(), centre)) return false;
@@ -71,7 +71,7 @@ void CentreSearch::clear_redundant(const Contacts& contacts, std::span<const Tar
   obstacles_.clear();
   for (std::size_t j = 0; j < targets.size(); ++j) {
     if (!support_.is_redundant(j) || targets[j].is_force) continue;
-    obstacles_.push_back({j, contacts.arm(j), targets[j].value + contacts.lift_by_forces(j, forces_)});
+    obstacles_.push_back({j, contacts.mean_normal(j), targets[j].value + contacts.lift_by_forces(j, forces_)});
   }
   Eigen::Vector3d centre = contacts.centre_of(y);
   if (release_centre(obstacles_, support_.unheld_directions(contacts), centre))
@@ -98,7 +98,7 @@ bool CentreSearch::clear_idle(Contacts& contacts, std::span<double> y) {
   obstacles_.clear();
   for (std::size_t j = 0; j < n; ++j) {
     if (is_idle(j))
-      obstacles_.push_back({j, contacts.arm(j), targets_[j].value + contacts.lift_by_forces(j, at.forces)});
+      obstacles_.push_back({j, contacts.mean_normal(j), targets_[j].value + contacts.lift_by_forces(j, at.forces)});
   }
   Eigen::Vector3d centre = contacts.centre_of(trial_);
   if (!clear_walls(obstacles_, projector, centre)) return false;

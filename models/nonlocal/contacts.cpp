@@ -35,7 +35,7 @@ Contacts::Contacts(const Formulation& model, std::span<const ContactClass> class
     : poisson_ratio_(require_poisson_ratio(model.poisson_ratio)),
       law_(model.terms),
       modulus_(monograin::composite_modulus(1.0, poisson_ratio_)),
-      arms_(classes.size(), Eigen::Vector3d::Zero()),
+      mean_normals_(classes.size(), Eigen::Vector3d::Zero()),
       at_(classes.size()),
       seen_(classes.size(), k_nan) {
   for (const ContactClass& c : classes) weights_.push_back(c.multiplicity());
@@ -52,8 +52,9 @@ Contacts::Contacts(const Formulation& model, std::span<const ContactClass> class
 
   const Eigen::Matrix3Xd mean_normals = mean_normals_of(classes);
   directions_ = centre == Centre::free ? basis_of(mean_normals, k_same_direction) : Eigen::Matrix3Xd(3, 0);
-  const Eigen::MatrixXd arms = mean_normals.transpose() * directions_;
-  for (std::size_t j = 0; j < classes.size(); ++j) arms_[j].head(arms.cols()) = arms.row(as_index(j)).transpose();
+  const Eigen::MatrixXd components = mean_normals.transpose() * directions_;
+  for (std::size_t j = 0; j < classes.size(); ++j)
+    mean_normals_[j].head(components.cols()) = components.row(as_index(j)).transpose();
 }
 
 Eigen::Vector3d Contacts::centre_of(std::span<const double> y) const {
@@ -62,9 +63,9 @@ Eigen::Vector3d Contacts::centre_of(std::span<const double> y) const {
   return centre;
 }
 
-double Contacts::carried(std::size_t j, std::span<const double> y) const noexcept {
+double Contacts::approach_by_centre(std::size_t j, std::span<const double> y) const noexcept {
   double sum = 0.0;
-  for (std::size_t k = 0; k < free_count(); ++k) sum += arms_[j][as_index(k)] * y[class_count() + k];
+  for (std::size_t k = 0; k < free_count(); ++k) sum += mean_normals_[j][as_index(k)] * y[class_count() + k];
   return sum;
 }
 
@@ -86,13 +87,13 @@ double Contacts::lift_by_forces(std::size_t j, std::span<const double> forces) c
 
 double Contacts::lift(std::size_t j, std::span<const double> forces, std::span<const double> y) const noexcept {
   double sum = lift_by_forces(j, forces);
-  for (std::size_t k = 0; k < free_count(); ++k) sum += arms_[j][as_index(k)] * y[class_count() + k];
+  for (std::size_t k = 0; k < free_count(); ++k) sum += mean_normals_[j][as_index(k)] * y[class_count() + k];
   return sum;
 }
 
 Eigen::Vector3d Contacts::net_force(std::span<const double> forces) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t j = 0; j < class_count(); ++j) sum += weights_[j] * forces[j] * arms_[j];
+  for (std::size_t j = 0; j < class_count(); ++j) sum += weights_[j] * forces[j] * mean_normals_[j];
   return sum;
 }
 

@@ -102,11 +102,11 @@ class Contacts {
   /// Number of walls of a class.
   [[nodiscard]] double weight(std::size_t j) const noexcept { return weights_[j]; }
   /// Mean normal of a class along the free directions; 0 beyond their number.
-  [[nodiscard]] const Eigen::Vector3d& arm(std::size_t j) const noexcept { return arms_[j]; }
+  [[nodiscard]] const Eigen::Vector3d& mean_normal(std::size_t j) const noexcept { return mean_normals_[j]; }
   /// Displacement of the centre in a state, along the free directions.
   [[nodiscard]] Eigen::Vector3d centre_of(std::span<const double> y) const;
   /// Approach that a displacement of the centre adds to that of a wall.
-  [[nodiscard]] double carried(std::size_t j, std::span<const double> y) const noexcept;
+  [[nodiscard]] double approach_by_centre(std::size_t j, std::span<const double> y) const noexcept;
 
   /// Contacts at a state; valid until another state is asked for.
   /// @throws std::domain_error for a contact beyond the end of the law
@@ -151,7 +151,7 @@ class Contacts {
   std::vector<double> weights_;
   Eigen::MatrixXd coupling_;
   Eigen::Matrix3Xd directions_;
-  std::vector<Eigen::Vector3d> arms_;
+  std::vector<Eigen::Vector3d> mean_normals_;
   std::vector<std::vector<Neighbours>> neighbours_;  ///< of the first wall of each class
   std::vector<double> rivalry_;  ///< s of each class from which walls push each other off; infinite if they do not
   bool has_modes_of_walls_ = false;

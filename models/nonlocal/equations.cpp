@@ -51,9 +51,9 @@ void jacobian(Contacts& contacts, std::span<const Ramp> ramps, std::span<const d
   jacobian.setZero(as_index(contacts.unknown_count()), as_index(contacts.unknown_count()));
   for (std::size_t j = 0; j < n; ++j) {
     const double force_slope = at.stiffness[j] * at.local[j].approach_slope;
-    const Eigen::Vector3d& arm = contacts.arm(j);
+    const Eigen::Vector3d& mean_normal = contacts.mean_normal(j);
     for (std::size_t k = 0; k < contacts.free_count(); ++k)
-      jacobian(as_index(n + k), as_index(j)) = contacts.weight(j) * arm[as_index(k)] * force_slope;
+      jacobian(as_index(n + k), as_index(j)) = contacts.weight(j) * mean_normal[as_index(k)] * force_slope;
     for (std::size_t i = 0; i < n; ++i) {
       if (ramps[i].is_force_controlled()) continue;
       jacobian(as_index(i), as_index(j)) = -contacts.coupling()(as_index(i), as_index(j)) * force_slope;
@@ -63,7 +63,7 @@ void jacobian(Contacts& contacts, std::span<const Ramp> ramps, std::span<const d
     } else {
       jacobian(as_index(j), as_index(j)) += at.local[j].approach_slope;
       for (std::size_t k = 0; k < contacts.free_count(); ++k)
-        jacobian(as_index(j), as_index(n + k)) = -arm[as_index(k)];
+        jacobian(as_index(j), as_index(n + k)) = -mean_normal[as_index(k)];
     }
   }
 }

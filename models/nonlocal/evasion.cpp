@@ -13,7 +13,7 @@ constexpr double k_no_approach = 1e-30;  // over R0; less is round-off of zero
 
 double free_approach(const contacts::Obstacle& wall, const Eigen::Vector3d& centre) {
   const double sum = wall.overlap(centre);
-  const double size = std::abs(wall.overlap_at_origin) + wall.arm.norm() * centre.norm();
+  const double size = std::abs(wall.overlap_at_origin) + wall.mean_normal.norm() * centre.norm();
   return std::abs(sum) <= std::max(k_round_off * size, k_no_approach) ? 0.0 : sum;
 }
 
@@ -21,7 +21,7 @@ bool clear_walls(std::span<const contacts::Obstacle> walls, const Eigen::Matrix3
   const auto overlaps = [](const contacts::Obstacle& wall, const Eigen::Vector3d& at) {
     return !(free_approach(wall, at) <= 0.0);
   };
-  return contacts::clear(walls, projector, k_same_direction, overlaps, centre);
+  return contacts::project_out_of(walls, projector, k_same_direction, overlaps, centre);
 }
 
 bool release_centre(std::span<const contacts::Obstacle> walls, const Eigen::Matrix3d& projector,

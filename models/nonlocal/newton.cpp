@@ -23,7 +23,7 @@ double unborne_force(const Contacts& contacts, std::span<const Target> targets, 
   Eigen::Vector3d push = Eigen::Vector3d::Zero();
   double sum = 0.0;
   for (std::size_t j = 0; j < targets.size(); ++j) {
-    const Eigen::Vector3d along = projector * contacts.arm(j);
+    const Eigen::Vector3d along = projector * contacts.mean_normal(j);
     if (!targets[j].is_force || along.norm() <= k_same_direction) continue;
     push += contacts.weight(j) * targets[j].value * along;
     sum += contacts.weight(j) * targets[j].value;
@@ -110,7 +110,7 @@ bool Newton::regularize_stiffness(const Contacts& contacts, const Goal& goal, do
 Eigen::Vector3d Newton::corrected_net_force(const Contacts& contacts, const Goal& goal) {
   Eigen::Vector3d sum = -goal.imbalance + net_force(contacts);
   for (std::size_t j = 0; j < goal.targets.size(); ++j)
-    sum += contacts.weight(j) * contacts.arm(j) * at_.stiffness[j] * tangent_.approach(j);
+    sum += contacts.weight(j) * contacts.mean_normal(j) * at_.stiffness[j] * tangent_.approach(j);
   return sum;
 }
 
@@ -119,7 +119,7 @@ void Newton::stiffen_touching(const Contacts& contacts, const Goal& goal, const 
                               std::span<const double> y) {
   for (std::size_t j = 0; j < goal.targets.size(); ++j) {
     if (goal.targets[j].is_force || at_.stiffness[j] != 0.0) continue;
-    if (goal.targets[j].value + contacts.arm(j).dot(contacts.centre_of(y)) >= -search.deepest)
+    if (goal.targets[j].value + contacts.mean_normal(j).dot(contacts.centre_of(y)) >= -search.deepest)
       at_.stiffness[j] = search.touch_stiffness;
   }
 }

@@ -133,12 +133,12 @@ void Particle::carry_to_support(std::span<double> y) {
   std::vector<contacts::Obstacle> walls;
   std::vector<char> touches;
   for (std::size_t i = 0; i < size(); ++i) {
-    const Eigen::Vector3d& arm = contacts_.arm(i);
+    const Eigen::Vector3d& mean_normal = contacts_.mean_normal(i);
     if (is_force_controlled(i)) {
-      push += contacts_.weight(i) * ramps_[i].end * arm;
+      push += contacts_.weight(i) * ramps_[i].end * mean_normal;
       sum += contacts_.weight(i) * std::abs(ramps_[i].end);
-    } else if (arm.norm() > k_same_direction) {
-      walls.push_back({i, arm, ramps_[i].start});
+    } else if (mean_normal.norm() > k_same_direction) {
+      walls.push_back({i, mean_normal, ramps_[i].start});
       touches.push_back(state_[i] >= -scales_.touch);
     }
   }
@@ -188,7 +188,8 @@ double Particle::force_rate(std::size_t i) const {
 double Particle::speed_under_force(std::size_t i) const {
   double speed = now_[i].stiffness > 0.0 ? ramps_[i].rate() / now_[i].stiffness : 0.0;
   for (std::size_t h = 0; h < size(); ++h) speed -= contacts_.coupling()(as_index(i), as_index(h)) * force_rate(h);
-  for (std::size_t k = 0; k < contacts_.free_count(); ++k) speed -= contacts_.arm(i)[as_index(k)] * rates_[size() + k];
+  for (std::size_t k = 0; k < contacts_.free_count(); ++k)
+    speed -= contacts_.mean_normal(i)[as_index(k)] * rates_[size() + k];
   return speed;
 }
 

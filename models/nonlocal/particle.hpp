@@ -74,7 +74,7 @@ class Particle {
   }
   /// Displacement of a wall towards the centre of the particle, wherever that is.
   [[nodiscard]] double depth(std::size_t i, double xi) const noexcept {
-    return displacement(i, xi) + contacts_.carried(i, state_);
+    return displacement(i, xi) + contacts_.approach_by_centre(i, state_);
   }
   /// Signed square of a class shortly after the state of evaluate(), as soon as it exceeds the touch tolerance on
   /// either side; 0 if it never does, none if no state exists before that.

@@ -77,13 +77,14 @@ bool Rates::find_unloaded(const Contacts& contacts, const State& now, std::span<
     if (now.y[j] > 0.0 || (now.ramps[j].is_force_controlled() && now.ramps[j].rate() != 0.0)) return false;
     const double rate = now.ramps[j].rate() - closing(now.y[j], now.tolerances.touch);
     if (!now.ramps[j].is_force_controlled() && now.tolerances.may_push(j) && std::isfinite(rate))
-      obstacles_.push_back({j, contacts.arm(j), rate});
+      obstacles_.push_back({j, contacts.mean_normal(j), rate});
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(obstacles_, Eigen::Matrix3d::Identity(), velocity)) return false;
   for (std::size_t j = 0; j < n; ++j) {
-    dy[j] =
-        now.ramps[j].is_force_controlled() ? 0.0 : free_approach({j, contacts.arm(j), now.ramps[j].rate()}, velocity);
+    dy[j] = now.ramps[j].is_force_controlled()
+                ? 0.0
+                : free_approach({j, contacts.mean_normal(j), now.ramps[j].rate()}, velocity);
   }
   for (const contacts::Obstacle& wall : obstacles_)
     dy[wall.index] = std::min(dy[wall.index], closing(now.y[wall.index], now.tolerances.touch));
@@ -118,7 +119,7 @@ void Rates::let_centre_follow(Contacts& contacts, const State& now, std::span<do
   for (std::size_t j = 0; j < n; ++j) {
     const double force_rate =
         now.ramps[j].is_force_controlled() ? now.ramps[j].rate() : stiffness_[j] * tangent_.approach(j);
-    net += contacts.weight(j) * force_rate * contacts.arm(j);
+    net += contacts.weight(j) * force_rate * contacts.mean_normal(j);
     // The tolerance is relative to all force rates that walls would cause, and to the forces where no rate is to
     // change.
     pressing += contacts.weight(j) * (std::abs(force_rate) + now.tolerances.pull * now.forces[j]);
@@ -145,7 +146,7 @@ Eigen::Vector3d Rates::error_against_forces(const Contacts& contacts, const Stat
   for (std::size_t j = 0; j < now.ramps.size(); ++j)
     is_forced = is_forced || (now.ramps[j].is_force_controlled() && now.y[j] > now.tolerances.touch);
   for (std::size_t j = 0; is_forced && j < now.ramps.size(); ++j) {
-    if (!support_.is_redundant(j)) error += contacts.weight(j) * now.forces[j] * contacts.arm(j);
+    if (!support_.is_redundant(j)) error += contacts.weight(j) * now.forces[j] * contacts.mean_normal(j);
   }
   return error;
 }
@@ -159,7 +160,7 @@ double Rates::reach_of_support(const Contacts& contacts, const State& now) const
     // A force that contacts bear already, or that does not shrink, says nothing about the gaps of walls that may bear
     // others.
     const bool is_shrinking = now.ramps[j].is_force_controlled() && now.ramps[j].rate() < 0.0;
-    const bool says_so = is_shrinking && (unheld * contacts.arm(j)).norm() > k_same_direction;
+    const bool says_so = is_shrinking && (unheld * contacts.mean_normal(j)).norm() > k_same_direction;
     near = std::max(near, says_so ? now.y[j] : k_unloaded * now.y[j]);
   }
   return near;
@@ -173,7 +174,7 @@ void Rates::let_idle_walls_push(const Contacts& contacts, const State& now, std:
   for (std::size_t j = 0; j < n; ++j) {
     const double rate = tangent_.approach(j) - closing(now.y[j], now.tolerances.touch);
     const bool pushes = support_.is_redundant(j) && !now.ramps[j].is_force_controlled() && now.tolerances.may_push(j);
-    if (pushes && std::isfinite(rate)) obstacles_.push_back({j, contacts.arm(j), rate});
+    if (pushes && std::isfinite(rate)) obstacles_.push_back({j, contacts.mean_normal(j), rate});
   }
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   if (!release_centre(obstacles_, support_.unheld_directions(contacts), velocity)) return;
@@ -183,7 +184,7 @@ void Rates::let_idle_walls_push(const Contacts& contacts, const State& now, std:
     if (next != obstacles_.end() && next->index == j)
       rate = std::min(free_approach(*next++, velocity), 0.0) + closing(now.y[j], now.tolerances.touch);
     else
-      rate += contacts.arm(j).dot(velocity);
+      rate += contacts.mean_normal(j).dot(velocity);
   }
   for (std::size_t k = 0; k < contacts.free_count(); ++k) dy[n + k] += velocity[as_index(k)];
 }

@@ -12,13 +12,15 @@ namespace {
 constexpr double k_small_force = 1e-3;  // prescribed forces below this, over the largest, are balanced by themselves
 constexpr double k_little = 1e-3;       // of the rest of a step: how far ahead forces are evaluated
 
-bool pushes_centre(const Contacts& contacts, std::size_t j) { return contacts.arm(j).norm() > k_same_direction; }
+bool pushes_centre(const Contacts& contacts, std::size_t j) {
+  return contacts.mean_normal(j).norm() > k_same_direction;
+}
 
 }  // namespace
 
 bool may_balance(const Contacts& contacts, std::span<const Target> targets, std::span<const double> y, double near) {
   const auto push_of = [&](std::size_t j) -> Eigen::Vector3d {
-    return contacts.weight(j) * targets[j].value * contacts.arm(j);
+    return contacts.weight(j) * targets[j].value * contacts.mean_normal(j);
   };
   double largest = 0.0;
   for (std::size_t j = 0; j < targets.size(); ++j) {
@@ -27,9 +29,9 @@ bool may_balance(const Contacts& contacts, std::span<const Target> targets, std:
   std::vector<Eigen::Vector3d> others;
   std::vector<Eigen::Vector3d> unloading;
   for (std::size_t j = 0; j < targets.size(); ++j) {
-    const Eigen::Vector3d& arm = contacts.arm(j);
+    const Eigen::Vector3d& mean_normal = contacts.mean_normal(j);
     if (targets[j].is_force || y[j] < -near || !pushes_centre(contacts, j)) continue;
-    others.push_back(arm.normalized());
+    others.push_back(mean_normal.normalized());
     if (y[j] > 0.0) unloading.push_back(-others.back());
   }
   const auto can_be_borne = [&](bool is_small) {
@@ -53,8 +55,8 @@ bool is_held_softly(const Contacts& contacts, std::span<const Ramp> ramps, std::
   Eigen::MatrixXd hold = reach;
   for (std::size_t j = 0; j < contacts.class_count(); ++j) {
     if (y[j] < -s) continue;
-    const auto arm = contacts.arm(j).head(count);
-    const Eigen::MatrixXd along = contacts.weight(j) * arm * arm.transpose();
+    const auto mean_normal = contacts.mean_normal(j).head(count);
+    const Eigen::MatrixXd along = contacts.weight(j) * mean_normal * mean_normal.transpose();
     reach += along;
     // A wall under a force follows the centre.
     if (y[j] > s && !ramps[j].is_force_controlled()) hold += along;
@@ -71,11 +73,11 @@ void CentreSupport::find_redundant(const Contacts& contacts) {
   normals_.clear();
   for (std::size_t j = 0; j < walls_.size(); ++j) {
     walls_[j].did_bear = walls_[j].may_bear;
-    if (walls_[j].may_bear && pushes_centre(contacts, j)) normals_.push_back(contacts.arm(j).normalized());
+    if (walls_[j].may_bear && pushes_centre(contacts, j)) normals_.push_back(contacts.mean_normal(j).normalized());
   }
   for (std::size_t j = 0; j < walls_.size(); ++j) {
     walls_[j].is_redundant =
-        walls_[j].may_bear && pushes_centre(contacts, j) && !in_reaction_cone(contacts.arm(j), normals_);
+        walls_[j].may_bear && pushes_centre(contacts, j) && !in_reaction_cone(contacts.mean_normal(j), normals_);
   }
 }
 
@@ -128,7 +130,7 @@ Eigen::Matrix3d CentreSupport::unheld_directions(const Contacts& contacts) const
   Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
   projector.topLeftCorner(free, free).setIdentity();
   for (std::size_t j = 0; j < walls_.size(); ++j) {
-    const Eigen::Vector3d along = projector * contacts.arm(j);
+    const Eigen::Vector3d along = projector * contacts.mean_normal(j);
     if (walls_[j].holds && along.norm() > k_same_direction)
       projector -= along * along.transpose() / along.squaredNorm();
   }

@@ -29,7 +29,7 @@ bool Tangent::eliminate_in_order(const Contacts& contacts, std::span<const doubl
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t h = 0; h < n; ++h) row(i)[h] = -contacts.coupling()(as_index(i), as_index(h)) * stiffness[h];
     row(i)[i] += 1.0;
-    for (std::size_t k = 0; k < contacts.free_count(); ++k) row(i)[n + k] = contacts.arm(i)[as_index(k)];
+    for (std::size_t k = 0; k < contacts.free_count(); ++k) row(i)[n + k] = contacts.mean_normal(i)[as_index(k)];
   }
   for (std::size_t p = 0; p < n; ++p) {
     double* const pivot_row = row(p);
@@ -59,7 +59,7 @@ bool Tangent::eliminate_by_blocks(const Contacts& contacts, std::span<const doub
   for (Eigen::Index j = 0; j < n; ++j) {
     const std::size_t i = static_cast<std::size_t>(j);
     roots_[j] = std::sqrt(contacts.weight(i) * stiffness[i]);
-    right.row(j).head(columns - 1) = contacts.arm(i).head(columns - 1).transpose();
+    right.row(j).head(columns - 1) = contacts.mean_normal(i).head(columns - 1).transpose();
   }
   for (Eigen::Index h = 0; h < n; ++h) {
     const double scale = -roots_[h] / contacts.weight(static_cast<std::size_t>(h));
@@ -84,7 +84,7 @@ Eigen::Vector3d Tangent::step_to_balance(const Contacts& contacts, std::span<con
     for (std::size_t l = 0; l < contacts.free_count(); ++l) {
       for (std::size_t j = 0; j < n; ++j) {
         hold(as_index(k), as_index(l)) +=
-            contacts.weight(j) * contacts.arm(j)[as_index(k)] * stiffness[j] * row(j)[n + l];
+            contacts.weight(j) * contacts.mean_normal(j)[as_index(k)] * stiffness[j] * row(j)[n + l];
       }
     }
   }

@@ -27,7 +27,7 @@ template <class Stiffness>
     double hold = 0.0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
     for (std::size_t j = 0; j < contacts.class_count(); ++j) {
-      const Eigen::Vector3d along = projector * contacts.arm(j);
+      const Eigen::Vector3d along = projector * contacts.mean_normal(j);
       const double own = contacts.weight(j) * stiffness(j) * along.squaredNorm();
       if (!(own > hold)) continue;
       hold = own;

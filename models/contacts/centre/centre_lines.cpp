@@ -17,25 +17,25 @@ CentreLines::CentreLines(std::span<const ContactClass> classes, bool is_free) {
   if (is_free) {
     Eigen::ColPivHouseholderQR<Eigen::Matrix3Xd> qr(means);
     qr.setThreshold(k_no_direction);
-    dimension_ = static_cast<int>(qr.rank());
+    free_directions_ = static_cast<int>(qr.rank());
     const Matrix q = qr.householderQ();
-    basis_.leftCols(dimension_) = q.leftCols(dimension_);
+    basis_.leftCols(free_directions_) = q.leftCols(free_directions_);
   }
   for (Eigen::Index i = 0; i < means.cols(); ++i) {
-    Vector arm = basis_.transpose() * means.col(i);
+    Vector mean_normal = basis_.transpose() * means.col(i);
     OnLine on{};
-    if (const double size = arm.norm(); size > k_no_direction) {
-      const Vector unit = arm / size;
+    if (const double size = mean_normal.norm(); size > k_no_direction) {
+      const Vector unit = mean_normal / size;
       while (on.line < directions_.size()) {
         const Vector& other = directions_[on.line];
         if ((unit - std::copysign(1.0, unit.dot(other)) * other).norm() <= k_no_direction) break;
         ++on.line;
       }
       if (on.line == directions_.size()) directions_.push_back(unit);
-      on.along = std::copysign(size, unit.dot(directions_[on.line]));
-      arm = on.along * directions_[on.line];
+      on.share = std::copysign(size, unit.dot(directions_[on.line]));
+      mean_normal = on.share * directions_[on.line];
     }
-    arms_.push_back(arm);
+    mean_normals_.push_back(mean_normal);
     on_lines_.push_back(on);
   }
   if (directions_.empty()) directions_.emplace_back(Vector::Zero());  // line of classes that act along none

@@ -1,6 +1,6 @@
 /// Directions in which a free centre can move, and the lines along which contact classes push it.
 ///
-/// The centre can only move along the mean normals of the classes, which keeps the symmetry of the walls. Classes of
+/// The centre can only move along the mean normals of the classes, because all walls of a class move alike. Classes of
 /// parallel or opposite mean normals push it along one line. Their forces are summed up along that line before they are
 /// resolved into components: the round-off of large forces that nearly cancel would otherwise act across the line,
 /// where a soft contact may be all that bears.
@@ -33,31 +33,32 @@ class CentreLines {
   /// @param is_free  false: nothing moves the centre
   CentreLines(std::span<const ContactClass> classes, bool is_free);
 
-  /// Free directions, 0 to 3.
-  [[nodiscard]] int dimension() const noexcept { return dimension_; }
+  /// Number of free directions, 0 to 3.
+  [[nodiscard]] int free_directions() const noexcept { return free_directions_; }
   /// A vector along the free directions, in space.
   [[nodiscard]] Eigen::Vector3d in_space(const Vector& vector) const noexcept { return basis_ * vector; }
-  [[nodiscard]] std::size_t classes() const noexcept { return arms_.size(); }
+  [[nodiscard]] std::size_t classes() const noexcept { return mean_normals_.size(); }
   /// Mean normal of a class along the free directions.
-  [[nodiscard]] const Vector& arm(std::size_t i) const noexcept { return arms_[i]; }
+  [[nodiscard]] const Vector& mean_normal(std::size_t i) const noexcept { return mean_normals_[i]; }
   /// True if the contacts of a class act on the centre.
-  [[nodiscard]] bool acts(std::size_t i) const noexcept { return on_lines_[i].along != 0.0; }
+  [[nodiscard]] bool acts(std::size_t i) const noexcept { return on_lines_[i].share != 0.0; }
 
-  /// Lines, at least one.
+  /// Number of lines. At least one: if no class acts on the centre, its direction is zero.
   [[nodiscard]] std::size_t size() const noexcept { return directions_.size(); }
-  [[nodiscard]] const Vector& direction(std::size_t line) const noexcept { return directions_[line]; }
-  /// Line of a class, and its mean normal as a multiple of the line's direction.
+  [[nodiscard]] const Vector& line_direction(std::size_t line) const noexcept { return directions_[line]; }
+  /// Line of a class; line_direction() times share_on_line() is its mean normal.
   [[nodiscard]] std::size_t line_of(std::size_t i) const noexcept { return on_lines_[i].line; }
-  [[nodiscard]] double along(std::size_t i) const noexcept { return on_lines_[i].along; }
+  [[nodiscard]] double share_on_line(std::size_t i) const noexcept { return on_lines_[i].share; }
 
-  /// Orthonormal basis: the first column along the stiffest line, the second along the line that is stiffest across the
-  /// first, and so on; zero columns for directions without stiffness. Along directions in which only soft contacts
-  /// bear, the forces of stiff contacts then have a component of zero, not of round-off.
+  /// Orthonormal basis by Gram and Schmidt with pivots by stiffness: the first column along the stiffest line, the
+  /// second along the line that is stiffest across the first, and so on; zero columns for directions without stiffness.
+  /// Along directions in which only soft contacts bear, the forces of stiff contacts then have a component of zero, not
+  /// of round-off.
   /// @param stiffness  line -> its stiffness
   template <class Stiffness>
   [[nodiscard]] Matrix stiffest_directions(Stiffness&& stiffness) const {
     Matrix basis = Matrix::Zero();
-    for (int k = 0; k < dimension_; ++k) {
+    for (int k = 0; k < free_directions_; ++k) {
       double most = 0.0;
       Vector next = Vector::Zero();
       for (std::size_t line = 0; line < size(); ++line) {
@@ -75,16 +76,17 @@ class CentreLines {
   }
   /// Components of a line's direction in a basis, without round-off.
   [[nodiscard]] Vector components(const Matrix& basis, std::size_t line) const {
-    constexpr double k_no_component = 1e-15;
+    constexpr double k_no_component = 1e-15;  // a few eps: round-off of sums of three products below 1
     const Vector raw = basis.transpose() * directions_[line];
     return (raw.array().abs() > k_no_component).select(raw, 0.0);
   }
   /// Displacement of the centre, along the directions of a basis, with which stiffnesses cancel forces; zero along
-  /// directions in which the stiffness is round-off.
+  /// directions in which the stiffness is round-off. Applies the pseudo-inverse of the stiffness matrix, whose diagonal
+  /// is scaled to order one, so that soft directions are not cut off beside stiff ones.
   /// @param stiffness  line -> its stiffness
   /// @param force      line -> force along it
   template <class Stiffness, class Force>
-  [[nodiscard]] Vector step(const Matrix& basis, Stiffness&& stiffness, Force&& force) const {
+  [[nodiscard]] Vector displacement_that_balances(const Matrix& basis, Stiffness&& stiffness, Force&& force) const {
     Matrix sum = Matrix::Zero();
     Vector load = Vector::Zero();
     Vector magnitudes = Vector::Zero();
@@ -109,12 +111,12 @@ class CentreLines {
  private:
   struct OnLine {
     std::size_t line = 0;
-    double along = 0.0;  ///< mean normal as a multiple of the line's direction; 0: acts along no line
+    double share = 0.0;  ///< mean normal as a multiple of the line's direction; 0: acts along no line
   };
 
-  int dimension_ = 0;
+  int free_directions_ = 0;
   Matrix basis_ = Matrix::Zero();  ///< orthonormal, in the first columns
-  std::vector<Vector> arms_;
+  std::vector<Vector> mean_normals_;
   std::vector<Vector> directions_;  ///< directions of the lines
   std::vector<OnLine> on_lines_;
 };

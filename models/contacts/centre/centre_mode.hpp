@@ -26,7 +26,7 @@ class CentreMode {
   /// @param reach  largest displacement that is expected
   CentreMode(std::span<const ContactClass> classes, double reach, std::vector<Unknown>& unknowns)
       : centre_(classes), slot_(unknowns.size()), reach_(reach), roles_(classes.size()), rates_(classes.size()) {
-    for (std::size_t k = 0; k < dimension(); ++k) {
+    for (std::size_t k = 0; k < free_directions(); ++k) {
       unknowns.push_back({.name = k_centre_unknowns[k],
                           .kind = Unknown::Kind::algebraic,
                           .scale = reach,
@@ -38,8 +38,10 @@ class CentreMode {
   // --- where the centre is
 
   [[nodiscard]] Eigen::Vector3d in_space(std::span<const double> y) const { return centre_.in_space(position(y)); }
-  /// By how much the centre has moved towards the walls of a class.
-  [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const { return centre_.along(i, position(y)); }
+  /// n.x, by how much the centre has moved towards the walls of a class.
+  [[nodiscard]] double approach_by_centre(std::size_t i, std::span<const double> y) const {
+    return centre_.approach_by_centre(i, position(y));
+  }
   /// Displacement of a contact.
   /// @param d  displacement with the centre at its initial position; for a touching wall under force control, at its
   ///           present one
@@ -48,15 +50,15 @@ class CentreMode {
     const double opening = law.opening(c.branch());
     if (c.is_force_controlled()) {
       // An open wall without load stays where it was left, until the particle pushes it.
-      return c.touches() ? d : std::min(d + carried(i, y), opening);
+      return c.touches() ? d : std::min(d + approach_by_centre(i, y), opening);
     }
-    const double overlap = d + carried(i, y) - opening;
+    const double overlap = d + approach_by_centre(i, y) - opening;
     const bool is_idle = c.touches() && std::abs(overlap) <= FreeCentre::k_bearing_overlap;
     return is_idle ? opening : opening + overlap;
   }
   /// Writes the position of the centre that balances the forces.
   void move(const Law& law, std::span<const Contact> contacts, double xi, std::span<double> y) {
-    if (dimension() == 0) return;
+    if (free_directions() == 0) return;
     write_position(centre_.equilibrium(Instant(law, contacts, xi), roles_, rest_, position(y)), y);
   }
   /// Writes the rates of the centre, with which integrators begin: difference quotients, not singular at first touch.
@@ -64,19 +66,20 @@ class CentreMode {
                    std::span<double> dy) {
     const Vector now = position(y);
     const Vector then = centre_.equilibrium(Instant(law, contacts, xi + ahead_), roles_, rest_, now);
-    for (std::size_t k = 0; k < dimension(); ++k) {
+    for (std::size_t k = 0; k < free_directions(); ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       dy[slot_ + k] = (then[axis] - now[axis]) / ahead_;
     }
   }
-  /// Rate of the work of one wall.
+  /// Rate of the work of one wall. A wall under force moves by the rate of its contact's displacement, less the motion
+  /// of the centre towards it.
   /// @param now       slope of the contact's coordinate
   /// @param velocity  velocity of the centre
   [[nodiscard]] double power(const Law& law, const Contact& c, std::size_t i, double xi, std::span<const double> y,
                              const typename Contact::Slope& now, const Vector& velocity) const {
     if (c.is_force_controlled()) {
       const double force = c.prescribed_force(xi);
-      return force > 0.0 ? c.power(law, xi, now) - force * centre_.along(i, velocity) : 0.0;
+      return force > 0.0 ? c.power(law, xi, now) - force * centre_.approach_by_centre(i, velocity) : 0.0;
     }
     const double d = displacement(law, c, i, c.drive().value(xi), y);
     return c.bears(law, d) ? law.force(c.branch(), d) * c.drive().rate() : 0.0;
@@ -114,6 +117,7 @@ class CentreMode {
   std::optional<DomainEnd> find(Law& law, std::span<Contact> contacts, double xi, std::span<const double> y,
                                 IsDecided&& is_decided, IsSeen&& is_seen, std::vector<Event>& log) {
     rest_ = position(y);
+    // Each contact changes a few times at most; beyond that, contacts alternate.
     for (std::size_t round = 0; round <= 4 * contacts.size() + 8; ++round) {
       Vector then = rest_;
       centre_.find_roles(Instant(law, contacts, xi), Instant(law, contacts, xi + ahead_), then, roles_);
@@ -121,7 +125,7 @@ class CentreMode {
       for (std::size_t i = 0; i < contacts.size(); ++i) {
         Contact& c = contacts[i];
         if (c.is_force_controlled() || is_decided(i)) continue;
-        Change change{.now = c.drive().value(xi) + centre_.along(i, rest_) - law.opening(c.branch()),
+        Change change{.now = c.drive().value(xi) + centre_.approach_by_centre(i, rest_) - law.opening(c.branch()),
                       .then = overlap_as_touching(law, contacts, i, xi + ahead_, then),
                       .turning = xi == 0.0 ? "load-reversal" : "retreat"};
         find_touch(law, c, change, is_seen(i), log);
@@ -134,10 +138,11 @@ class CentreMode {
 
   // --- guards of the contacts that depend on where the centre is
 
-  /// Arms the guards of a contact. The target of a boundary is a displacement, those of the others are overlaps.
+  /// Arms the guards of a contact. The target of a boundary is a displacement, those of the others are overlaps. A wall
+  /// within k_touch of touching has to leave that band on the other side, so that its guard does not begin at a root.
   void arm_guards(const Law& law, const Contact& c, std::size_t i, double xi, std::span<const double> y,
                   Guards& guards) const {
-    const double overlap = c.drive().value(xi) + carried(i, y) - law.opening(c.branch());
+    const double overlap = c.drive().value(xi) + approach_by_centre(i, y) - law.opening(c.branch());
     const auto add = [&](GuardKind kind, int direction, std::string_view name, double target) {
       guards.add({.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name}, target);
     };
@@ -161,19 +166,20 @@ class CentreMode {
                                    double target, double xi, std::span<const double> y, const Vector& velocity) {
     const WallDrive& drive = contacts[i].drive();
     if (kind == k_retreat) {
-      const double overlap = drive.value(xi) + carried(i, y) - law.opening(contacts[i].branch());
-      if (overlap <= k_steady_overlap) return k_at_rest / reach_;
+      const double overlap = drive.value(xi) + approach_by_centre(i, y) - law.opening(contacts[i].branch());
+      if (overlap <= k_steady_overlap) return k_at_rest / reach_;  // positive: does not fire
       // The rate of a contact at rest is round-off.
       const double fastest = std::max(velocity.norm(), fastest_wall_);
-      return (drive.rate() + centre_.along(i, velocity) + k_at_rest * fastest) / reach_;
+      return (drive.rate() + centre_.approach_by_centre(i, velocity) + k_at_rest * fastest) / reach_;
     }
-    if (kind == k_boundary) return (drive.value(xi) + carried(i, y) - target) / reach_;
+    if (kind == k_boundary) return (drive.value(xi) + approach_by_centre(i, y) - target) / reach_;
     return (overlap_as_touching(law, contacts, i, xi, position(y)) - target) / reach_;
   }
 
  private:
   /// Bounds of the time (in step coordinates) by which a mode is decided ahead; briefer modes are missed. The slower
-  /// the walls, the farther ahead, so that the fastest wall moves by k_distance_ahead, which is more than round-off.
+  /// the walls, the farther ahead, so that the fastest wall moves by k_distance_ahead, which is more than round-off of
+  /// the balance; the fixed k_ahead serves where a mode is read from rates or one contact alone.
   static constexpr double k_least_ahead = 1e-6;
   static constexpr double k_most_ahead = 1e-3;
   static constexpr double k_distance_ahead = 1e-9;  ///< over R0
@@ -224,14 +230,16 @@ class CentreMode {
     std::string_view turning{};  ///< event of beginning to unload
   };
 
-  [[nodiscard]] std::size_t dimension() const noexcept { return static_cast<std::size_t>(centre_.dimension()); }
+  [[nodiscard]] std::size_t free_directions() const noexcept {
+    return static_cast<std::size_t>(centre_.free_directions());
+  }
   [[nodiscard]] Vector position(std::span<const double> y) const noexcept {
     Vector c = Vector::Zero();
-    for (std::size_t k = 0; k < dimension(); ++k) c[static_cast<Eigen::Index>(k)] = y[slot_ + k];
+    for (std::size_t k = 0; k < free_directions(); ++k) c[static_cast<Eigen::Index>(k)] = y[slot_ + k];
     return c;
   }
   void write_position(const Vector& c, std::span<double> y) const noexcept {
-    for (std::size_t k = 0; k < dimension(); ++k) y[slot_ + k] = c[static_cast<Eigen::Index>(k)];
+    for (std::size_t k = 0; k < free_directions(); ++k) y[slot_ + k] = c[static_cast<Eigen::Index>(k)];
   }
   /// Position at which a particle that no contact holds comes to rest under the forces that begin with a step: between
   /// walls that bear them. No force resists the motion, which takes no time.
@@ -245,19 +253,19 @@ class CentreMode {
     std::vector<char> touches;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const Contact& c = contacts[i];
-      const Vector& arm = centre_.lines().arm(i);
+      const Vector& mean_normal = centre_.lines().mean_normal(i);
       if (c.is_force_controlled()) {
         if (c.prescribed_force(0.0) > 0.0) return std::nullopt;
-        const double force = centre_.count(i) * c.prescribed_force(1.0);
-        push += force * arm;
+        const double force = centre_.wall_count(i) * c.prescribed_force(1.0);
+        push += force * mean_normal;
         sum += force;
         continue;
       }
       const double overlap = c.drive().start() - law.opening(c.branch());
-      const double now = overlap + centre_.along(i, rest);
+      const double now = overlap + centre_.approach_by_centre(i, rest);
       if (now > k_touch) return std::nullopt;
       if (!centre_.lines().acts(i)) continue;
-      walls.push_back({i, arm, overlap});
+      walls.push_back({i, mean_normal, overlap});
       touches.push_back(now >= -k_touch);
     }
     if (!(push.norm() > k_round_off * sum)) return std::nullopt;
@@ -268,7 +276,7 @@ class CentreMode {
   [[nodiscard]] double overlap_as_touching(const Law& law, std::span<const Contact> contacts, std::size_t i, double xi,
                                            const Vector& c) {
     if (roles_[i] == Role::idle) return centre_.unpushed_overlap(i, Instant(law, contacts, xi), roles_, rest_, c);
-    return contacts[i].drive().value(xi) + centre_.along(i, c) - law.opening(contacts[i].branch());
+    return contacts[i].drive().value(xi) + centre_.approach_by_centre(i, c) - law.opening(contacts[i].branch());
   }
   /// Makes or loses a contact whose wall and particle just meet, by its overlap a little later.
   static void find_touch(Law& law, Contact& c, const Change& change, bool is_seen, std::vector<Event>& log) {

@@ -44,20 +44,20 @@ void FreeCentre::sum_up(const CentreWalls& walls, std::span<const Role> roles, c
     forces_[i] = 0.0;
     overlaps_[i] = -k_infinity;
     if (!acts(i)) continue;
-    const double along = lines_.along(i);
+    const double share = lines_.share_on_line(i);
     Load& line = loads_[lines_.line_of(i)];
     if (const auto prescribed = walls.prescribed_force(i)) {
-      line.force += counts_[i] * *prescribed * along;
+      line.force += counts_[i] * *prescribed * share;
       prescribed_ += counts_[i] * std::abs(*prescribed);
       continue;
     }
     const double undisplaced = walls.overlap(i);
-    overlaps_[i] = undisplaced + lines_.arm(i).dot(c);
+    overlaps_[i] = undisplaced + lines_.mean_normal(i).dot(c);
     if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0)) continue;
     const auto [force, slope] = walls.force(i, overlaps_[i]);
     forces_[i] = force;
-    line.force += counts_[i] * force * along;
-    line.stiffness += counts_[i] * slope * along * along;
+    line.force += counts_[i] * force * share;
+    line.stiffness += counts_[i] * slope * share * share;
     magnitudes += counts_[i] * (force + slope * std::max({1.0, std::abs(undisplaced), distance}));
   }
   round_off_ = k_round_off * (magnitudes + prescribed_);
@@ -65,31 +65,31 @@ void FreeCentre::sum_up(const CentreWalls& walls, std::span<const Role> roles, c
 
 FreeCentre::Vector FreeCentre::net_force() const noexcept {
   Vector sum = Vector::Zero();
-  for (std::size_t line = 0; line < loads_.size(); ++line) sum += loads_[line].force * lines_.direction(line);
+  for (std::size_t line = 0; line < loads_.size(); ++line) sum += loads_[line].force * lines_.line_direction(line);
   return sum;
 }
 
 /// Newton's step towards the balance if contacts of comparable stiffness bear in all directions; none otherwise.
-std::optional<FreeCentre::Vector> FreeCentre::step_of_all(const Vector& net) const {
+std::optional<FreeCentre::Vector> FreeCentre::newton_step_if_held(const Vector& net) const {
   Matrix stiffness = Matrix::Zero();
   for (std::size_t line = 0; line < loads_.size(); ++line) {
-    const Vector& direction = lines_.direction(line);
+    const Vector& direction = lines_.line_direction(line);
     if (loads_[line].stiffness > 0.0) stiffness += (loads_[line].stiffness * direction) * direction.transpose();
   }
   const double largest = stiffness.diagonal().maxCoeff();
-  for (int k = dimension(); k < 3; ++k) stiffness(k, k) = largest;
+  for (int k = free_directions(); k < 3; ++k) stiffness(k, k) = largest;
   Matrix inverse = Matrix::Zero();
   double determinant = 0.0;
   bool is_regular = false;
   stiffness.computeInverseAndDetWithCheck(inverse, determinant, is_regular, 0.0);
-  // No eigenvalue is less than the determinant over the square of the trace.
+  // The determinant over the square of the trace, at most 9 largest^2, bounds the smallest eigenvalue from below.
   if (!(determinant > k_comparable * largest * largest * largest)) return std::nullopt;
   return -inverse * net;
 }
 
 /// Newton's step towards the balance along the directions of a basis.
 FreeCentre::Vector FreeCentre::step(const Matrix& basis) const {
-  return lines_.step(
+  return lines_.displacement_that_balances(
       basis, [this](std::size_t line) { return loads_[line].stiffness; },
       [this](std::size_t line) { return loads_[line].force; });
 }
@@ -108,15 +108,15 @@ FreeCentre::Vector FreeCentre::flight(const CentreWalls& walls, std::span<const 
   std::optional<std::size_t> nearest;
   double distance = k_infinity;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    const double approach = lines_.arm(i).dot(path);
+    const double approach = lines_.mean_normal(i).dot(path);
     if (roles[i] != Role::bearing || walls.prescribed_force(i) || approach <= k_no_direction) continue;
-    const double gap = std::max(0.0, -(walls.overlap(i) + lines_.arm(i).dot(c)));
+    const double gap = std::max(0.0, -(walls.overlap(i) + lines_.mean_normal(i).dot(c)));
     if (gap / approach >= distance) continue;
     nearest = i;
     distance = gap / approach;
   }
   if (!nearest) throw DomainError(Limit::centre_driven_away);
-  const double approach = lines_.arm(*nearest).dot(path);
+  const double approach = lines_.mean_normal(*nearest).dot(path);
   const double overlap = walls.overlap_under(*nearest, size / (counts_[*nearest] * approach));
   return (distance + overlap / approach) * path;
 }
@@ -149,13 +149,13 @@ void FreeCentre::regularize_stiffness(const CentreWalls& walls, std::span<const 
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     if (roles[i] != Role::bearing || !(overlaps_[i] > 0.0)) continue;
     double& stiffness = loads_[lines_.line_of(i)].stiffness;
-    const double along = lines_.along(i);
+    const double share = lines_.share_on_line(i);
     if (forces_[i] < force) {
       const double now = walls.force(i, overlaps_[i]).slope;
       const double under = walls.force(i, walls.overlap_under(i, force)).slope;
-      stiffness += counts_[i] * std::max(0.0, under - now) * along * along;
+      stiffness += counts_[i] * std::max(0.0, under - now) * share * share;
     } else if (stiffness == 0.0) {
-      stiffness += counts_[i] * forces_[i] / overlaps_[i] * along * along;
+      stiffness += counts_[i] * forces_[i] / overlaps_[i] * share * share;
     }
   }
 }
@@ -163,34 +163,35 @@ void FreeCentre::regularize_stiffness(const CentreWalls& walls, std::span<const 
 /// Position at which forces balance, by Newton's method with line search from c.
 /// @throws DomainError if no balance is found, or prescribed forces drive the centre away
 FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const Role> roles, Vector c) {
-  double last = k_infinity;
+  double last_length = k_infinity;
   sum_up(walls, roles, c);
   for (int k = 0; k < k_most_steps; ++k) {
     const Vector net = net_force();
     regularize_stiffness(walls, roles, net.norm());
-    Vector borne = net;
-    Vector wanted = Vector::Zero();
-    const auto quick = step_of_all(net);
-    is_held_ = quick.has_value();
-    if (quick) {
-      wanted = *quick;
+    Vector net_along_held = net;
+    Vector newton_step = Vector::Zero();
+    const auto fast_step = newton_step_if_held(net);
+    is_held_ = fast_step.has_value();
+    if (fast_step) {
+      newton_step = *fast_step;
     } else {
       const Matrix basis = stiffest_directions();
-      borne = basis * (basis.transpose() * net);
-      if (const Vector left = net - borne; left.norm() > std::max(round_off_, k_no_net_force * prescribed_)) {
-        c += flight(walls, roles, left, c);
+      net_along_held = basis * (basis.transpose() * net);
+      if (const Vector net_across = net - net_along_held;
+          net_across.norm() > std::max(round_off_, k_no_net_force * prescribed_)) {
+        c += flight(walls, roles, net_across, c);
         sum_up(walls, roles, c);
         continue;
       }
-      wanted = step(basis);
+      newton_step = step(basis);
     }
-    if (borne.norm() <= round_off_) return c + wanted;
-    const double share = share_of_step(walls, roles, c, wanted);
-    c += share * wanted;
-    // The step is round-off of the position.
-    const double size = share * wanted.norm();
-    if (size <= k_round_off * std::max(1.0, c.norm()) && size >= 0.5 * last) return c;
-    last = size;
+    if (net_along_held.norm() <= round_off_) return c + newton_step;
+    const double share = share_of_step(walls, roles, c, newton_step);
+    c += share * newton_step;
+    // Ends when the step is round-off of the position and no longer shrinks.
+    const double size = share * newton_step.norm();
+    if (size <= k_round_off * std::max(1.0, c.norm()) && size >= 0.5 * last_length) return c;
+    last_length = size;
   }
   throw DomainError(Limit::no_solution, "the balance of forces on the free centre was not found");
 }
@@ -203,7 +204,7 @@ bool FreeCentre::is_held() const noexcept {
   return is_held_;
 }
 
-/// Finds the contacts that bear in the last sum_up().
+/// Finds the contacts that bear in the last sum_up(). Overwrites the stiffnesses of loads_, as work space.
 /// @param least_overlap  overlap above which a contact bears
 /// @return basis of the directions in which contacts bear
 FreeCentre::Matrix FreeCentre::held_directions(const CentreWalls& walls, double least_overlap) {
@@ -212,31 +213,31 @@ FreeCentre::Matrix FreeCentre::held_directions(const CentreWalls& walls, double 
     const double least_force = least_overlap > 0.0 ? round_off_ : 0.0;
     bears_[i] = forces_[i] > least_force && overlaps_[i] > least_overlap;
     if (!bears_[i]) continue;
-    const double along = lines_.along(i);
-    loads_[lines_.line_of(i)].stiffness += counts_[i] * walls.force(i, overlaps_[i]).slope * along * along;
+    const double share = lines_.share_on_line(i);
+    loads_[lines_.line_of(i)].stiffness += counts_[i] * walls.force(i, overlaps_[i]).slope * share * share;
   }
   return stiffest_directions();
 }
 
 /// Moves the centre out of all walls that do not bear, except for one.
 /// @return false, with c unchanged, if these walls leave no room
-bool FreeCentre::clear_all_but(std::optional<std::size_t> left_out, const CentreWalls& walls,
+bool FreeCentre::clear_all_but(std::optional<std::size_t> ignored_wall, const CentreWalls& walls,
                                std::span<const Role> roles, Vector& c) {
   to_clear_.clear();
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    if (!acts(i) || roles[i] == Role::away || walls.prescribed_force(i) || i == left_out) continue;
+    if (!acts(i) || roles[i] == Role::away || walls.prescribed_force(i) || i == ignored_wall) continue;
     if (bears_[i] || !(across_held(i) > k_no_direction)) continue;
-    to_clear_.push_back({i, lines_.arm(i), walls.overlap(i)});
+    to_clear_.push_back({i, lines_.mean_normal(i), walls.overlap(i)});
   }
   Matrix free = Matrix::Zero();
-  free.topLeftCorner(dimension(), dimension()).setIdentity();
+  free.topLeftCorner(free_directions(), free_directions()).setIdentity();
   const auto overlaps = [](const Obstacle& wall, const Vector& at) { return !(wall.overlap(at) <= k_round_off); };
-  return clear(to_clear_, free - held_directions_ * held_directions_.transpose(), k_no_direction, overlaps, c);
+  return project_out_of(to_clear_, free - held_directions_ * held_directions_.transpose(), k_no_direction, overlaps, c);
 }
 
 /// Component of a mean normal across the directions in which contacts bear.
 double FreeCentre::across_held(std::size_t i) const {
-  return (lines_.arm(i) - held_directions_ * (held_directions_.transpose() * lines_.arm(i))).norm();
+  return (lines_.mean_normal(i) - held_directions_ * (held_directions_.transpose() * lines_.mean_normal(i))).norm();
 }
 
 /// Completes a balanced position along loose directions, in which no contact bears: there the centre stays where the
@@ -245,13 +246,13 @@ double FreeCentre::across_held(std::size_t i) const {
 /// @param left_out  a wall that does not push
 FreeCentre::Vector FreeCentre::with_loose_directions(const CentreWalls& walls, std::span<const Role> roles,
                                                      const Vector& rest, const Vector& balanced,
-                                                     std::optional<std::size_t> left_out) {
+                                                     std::optional<std::size_t> ignored_wall) {
   for (const double least_overlap : {k_bearing_overlap, 0.0}) {
     held_directions_ = held_directions(walls, least_overlap);
-    if (dimension() == 0 || held_directions_.col(dimension() - 1).squaredNorm() > 0.0) return balanced;
+    if (free_directions() == 0 || held_directions_.col(free_directions() - 1).squaredNorm() > 0.0) return balanced;
     Vector c = rest + held_directions_ * (held_directions_.transpose() * (balanced - rest));
     // Walls that leave no room bear, however small their overlap: the second round counts them.
-    if (clear_all_but(left_out, walls, roles, c) || least_overlap == 0.0) return c;
+    if (clear_all_but(ignored_wall, walls, roles, c) || least_overlap == 0.0) return c;
   }
   return balanced;
 }
@@ -265,7 +266,7 @@ FreeCentre::Vector FreeCentre::equilibrium(const CentreWalls& walls, std::span<c
 double FreeCentre::unpushed_overlap(std::size_t i, const CentreWalls& walls, std::span<const Role> roles,
                                     const Vector& rest, const Vector& c) {
   sum_up(walls, roles, c);
-  return walls.overlap(i) + lines_.arm(i).dot(with_loose_directions(walls, roles, rest, c, i));
+  return walls.overlap(i) + lines_.mean_normal(i).dot(with_loose_directions(walls, roles, rest, c, i));
 }
 
 void FreeCentre::find_roles(const CentreWalls& now, const CentreWalls& then, Vector& c, std::span<Role> roles) {
@@ -273,9 +274,10 @@ void FreeCentre::find_roles(const CentreWalls& now, const CentreWalls& then, Vec
   std::ranges::fill(roles, Role::bearing);
   c = with_loose_directions(then, roles, rest, balance(then, roles, rest), std::nullopt);
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    const bool bears_now = !now.prescribed_force(i) && now.overlap(i) + lines_.arm(i).dot(rest) > k_bearing_overlap;
+    const bool bears_now =
+        !now.prescribed_force(i) && now.overlap(i) + lines_.mean_normal(i).dot(rest) > k_bearing_overlap;
     if (bears_now || bears_[i] || across_held(i) <= k_no_direction) continue;
-    const bool is_near = then.prescribed_force(i) || then.overlap(i) + lines_.arm(i).dot(c) > -k_near;
+    const bool is_near = then.prescribed_force(i) || then.overlap(i) + lines_.mean_normal(i).dot(c) > -k_near;
     roles[i] = is_near ? Role::idle : Role::away;
   }
 }
@@ -291,7 +293,7 @@ FreeCentre::Vector FreeCentre::velocity(const CentreWalls& walls, std::span<cons
       rate = rates[i];
     else if (forces_[i] > 0.0)
       rate = rates[i] * walls.force(i, overlaps_[i]).slope;
-    loads_[lines_.line_of(i)].force += counts_[i] * rate * lines_.along(i);
+    loads_[lines_.line_of(i)].force += counts_[i] * rate * lines_.share_on_line(i);
   }
   return step(stiffest_directions());
 }

@@ -22,7 +22,7 @@ namespace monograin::contacts {
 
 /// Part that a class of walls plays for a free centre in a mode.
 enum class Role : std::uint8_t {
-  away,     ///< the class is out of reach
+  away,     ///< its gap is too wide to close in this mode
   bearing,  ///< a contact of the class bears if it has an overlap
   idle      ///< the class bears nothing; a wall that touches pushes the centre along
 };
@@ -59,12 +59,15 @@ class FreeCentre {
   static constexpr double k_bearing_overlap = 1e-13;
   explicit FreeCentre(std::span<const ContactClass> classes);
 
-  [[nodiscard]] int dimension() const noexcept { return lines_.dimension(); }
+  /// Number of free directions, 0 to 3.
+  [[nodiscard]] int free_directions() const noexcept { return lines_.free_directions(); }
   [[nodiscard]] const CentreLines& lines() const noexcept { return lines_; }
   /// Number of walls of a class.
-  [[nodiscard]] double count(std::size_t i) const noexcept { return counts_[i]; }
-  /// By how much a displacement c of the centre deepens the contacts of a class.
-  [[nodiscard]] double along(std::size_t i, const Vector& c) const noexcept { return lines_.arm(i).dot(c); }
+  [[nodiscard]] double wall_count(std::size_t i) const noexcept { return counts_[i]; }
+  /// n.c, by how much a displacement c of the centre deepens the contacts of a class.
+  [[nodiscard]] double approach_by_centre(std::size_t i, const Vector& c) const noexcept {
+    return lines_.mean_normal(i).dot(c);
+  }
   [[nodiscard]] Eigen::Vector3d in_space(const Vector& c) const noexcept { return lines_.in_space(c); }
 
   /// Position of the centre in a mode.
@@ -97,7 +100,7 @@ class FreeCentre {
   void sum_up(const CentreWalls& walls, std::span<const Role> roles, const Vector& c);
   [[nodiscard]] Vector net_force() const noexcept;
   [[nodiscard]] Matrix stiffest_directions() const;
-  [[nodiscard]] std::optional<Vector> step_of_all(const Vector& net) const;
+  [[nodiscard]] std::optional<Vector> newton_step_if_held(const Vector& net) const;
   [[nodiscard]] Vector step(const Matrix& basis) const;
   [[nodiscard]] bool is_held() const noexcept;
   [[nodiscard]] Vector flight(const CentreWalls& walls, std::span<const Role> roles, const Vector& push,
@@ -108,8 +111,8 @@ class FreeCentre {
   [[nodiscard]] Vector balance(const CentreWalls& walls, std::span<const Role> roles, Vector c);
   [[nodiscard]] Matrix held_directions(const CentreWalls& walls, double least_overlap);
   [[nodiscard]] Vector with_loose_directions(const CentreWalls& walls, std::span<const Role> roles, const Vector& rest,
-                                             const Vector& balanced, std::optional<std::size_t> left_out);
-  [[nodiscard]] bool clear_all_but(std::optional<std::size_t> left_out, const CentreWalls& walls,
+                                             const Vector& balanced, std::optional<std::size_t> ignored_wall);
+  [[nodiscard]] bool clear_all_but(std::optional<std::size_t> ignored_wall, const CentreWalls& walls,
                                    std::span<const Role> roles, Vector& c);
   [[nodiscard]] double across_held(std::size_t i) const;
 

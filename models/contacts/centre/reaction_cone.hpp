@@ -10,7 +10,7 @@ namespace monograin {
 
 /// True if non-negative multiples of the directions, none above a million times the push, add up to its opposite to
 /// within a tolerance: the push lies in the negative cone of the directions. Found by non-negative least squares with
-/// active sets (Lawson and Hanson, 1974).
+/// active sets (Lawson and Hanson, 1974), which Eigen 3.4 lacks.
 /// @param push        not zero
 /// @param directions  unit vectors
 /// @param nothing     tolerance: unbalanced remainder over the push

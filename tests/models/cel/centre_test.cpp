@@ -46,7 +46,7 @@ TEST(CelCentre, FeelsTheSumOfTheForcesAndItsSpring) {
 TEST(CelCentre, LetsItsSpringFollowTheWallsThatLead) {
   Centre centre(walls({{0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {1, 0, 0}}), true);
   const std::vector<double> none(4);
-  const Vector3d n = centre.lines().arm(0);
+  const Vector3d n = centre.lines().mean_normal(0);
   // A wall that comes in at 0.2 pushes the particle away along its normal; with a partner at rest, half as fast.
   centre.follow(0.0, std::vector<std::optional<double>>{0.2, std::nullopt, std::nullopt, std::nullopt});
   EXPECT_NEAR(centre.stretch(0.5, -0.1 * n).norm(), 0.0, 1e-16);

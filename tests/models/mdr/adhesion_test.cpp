@@ -29,7 +29,7 @@ constexpr double k_shares[] = {0.003, 0.03, 0.3, 0.7, 0.97};
 
 // --- contacts on which the law is tested
 
-/// An adhesive contact below its largest overlap: its frame over radius, largest overlap and overlap.
+/// An adhesive contact below its largest overlap: its image over radius, largest overlap and overlap.
 struct Bond {
   std::string name;
   double modulus;         ///< E*
@@ -38,16 +38,16 @@ struct Bond {
   double overlap_max;    ///< an elastic contact does not know it
   double max_length;     ///< over which things change with the largest overlap; 0: not at all
   double radius_length;  ///< and with the radius
-  std::function<Frame(double radius, double overlap_max, double overlap)> frame_of;
+  std::function<Image(double radius, double overlap_max, double overlap)> image_of;
   std::function<double(double displacement_1d)> overlap_at;
 
-  [[nodiscard]] Frame frame(double overlap) const { return frame_of(radius, overlap_max, overlap); }
-  [[nodiscard]] Indenter indenter() const { return frame(0.0).indenter; }
+  [[nodiscard]] Image image(double overlap) const { return image_of(radius, overlap_max, overlap); }
+  [[nodiscard]] Indenter indenter() const { return image(0.0).indenter; }
   [[nodiscard]] double critical(Control control = Control::displacement) const {
-    return critical_radius(indenter(), modulus, surface_energy, control);
+    return critical_radius(indenter(), {modulus, surface_energy}, control);
   }
-  [[nodiscard]] PeelState peel(double a) const { return peel_state(indenter(), modulus, surface_energy, a); }
-  [[nodiscard]] double stretch(double a) const { return critical_stretch(modulus, surface_energy, a); }
+  [[nodiscard]] PeelState peel(double a) const { return peel_state(indenter(), {modulus, surface_energy}, a); }
+  [[nodiscard]] double stretch(double a) const { return critical_stretch({modulus, surface_energy}, a); }
   /// Contact radius between the critical one and the end of the profile, or ten times the critical one.
   [[nodiscard]] double between(double share) const {
     const Indenter shape = indenter();
@@ -62,15 +62,15 @@ struct Bond {
     return free_force(indenter(), modulus, a) + 2.0 * modulus * a * length_scale(a);
   }
   [[nodiscard]] Contact sticking(double r, double m, double overlap, double a) const {
-    return sticking_contact(frame_of(r, m, overlap), modulus, a);
+    return sticking_contact(image_of(r, m, overlap), modulus, a);
   }
   [[nodiscard]] Contact peeling(double r, double m, double overlap) const {
-    const Frame at = frame_of(r, m, overlap);
-    return peeling_contact(at, modulus, surface_energy,
-                           critical_radius(at.indenter, modulus, surface_energy, Control::displacement));
+    const Image at = image_of(r, m, overlap);
+    return peeling_contact(at, {modulus, surface_energy},
+                           critical_radius(at.indenter, {modulus, surface_energy}, Control::displacement));
   }
   [[nodiscard]] double energy(double overlap, double a) const {
-    return adhesive_energy(frame(overlap), modulus, surface_energy, a);
+    return adhesive_energy(image(overlap), {modulus, surface_energy}, a);
   }
 };
 
@@ -100,7 +100,7 @@ std::vector<Bond> elastic_bonds() {
                           .overlap_max = 0.0,
                           .max_length = 0.0,
                           .radius_length = radius,
-                          .frame_of = [=](double R, double, double delta) { return elastic_frame(profile, R, delta); },
+                          .image_of = [=](double R, double, double delta) { return elastic_image(profile, R, delta); },
                           .overlap_at = [](double displacement_1d) { return displacement_1d; }});
       }
     }
@@ -125,7 +125,7 @@ std::vector<Bond> plastic_bonds() {
            .overlap_max = dent.overlap_max,
            .max_length = area / (2.0 * dent.grain.radius),
            .radius_length = area / (2.0 * dent.overlap_max),
-           .frame_of = [=](double R, double m, double delta) { return unloading_frame(dent.shape_of(R, m), delta); },
+           .image_of = [=](double R, double m, double delta) { return unloading_image(dent.shape_of(R, m), delta); },
            .overlap_at = [=](double d) { return overlap_at(shape, d); }});
     }
   }
@@ -146,7 +146,7 @@ TEST(MdrAdhesionOfTheParabola, PullsOffAsJkr) {
       const double dg = ratio * k_modulus * radius;
       const Indenter indenter = elastic_indenter(ElasticProfile::parabola, radius);
       const auto state = [&](Control control) {
-        return peel_state(indenter, k_modulus, dg, critical_radius(indenter, k_modulus, dg, control));
+        return peel_state(indenter, {k_modulus, dg}, critical_radius(indenter, {k_modulus, dg}, control));
       };
       const PeelState by_displacement = state(Control::displacement);
       const PeelState by_force = state(Control::force);
@@ -166,8 +166,8 @@ TEST(MdrAdhesionOfTheParabola, PullsOffAsJkr) {
 /// Pull-off force of the elastic ellipse over pi dg R.
 double ellipse_pull_off(double modulus, double surface_energy, Control control) {
   const Indenter indenter = elastic_indenter(ElasticProfile::ellipse, 1.0);
-  const double a = critical_radius(indenter, modulus, surface_energy, control);
-  return peel_state(indenter, modulus, surface_energy, a).force / (pi * surface_energy);
+  const double a = critical_radius(indenter, {modulus, surface_energy}, control);
+  return peel_state(indenter, {modulus, surface_energy}, a).force / (pi * surface_energy);
 }
 
 TEST(MdrAdhesionOfTheEllipse, PullsOffAtThePrintedForces) {
@@ -191,7 +191,7 @@ TEST(MdrAdhesionOfTheEllipse, ApproachesJkrWithTheSquareOfTheCriticalRadius) {
   }
 }
 
-TEST(MdrAdhesionCriticalRadius, IsWhereTheProfileIsAsSteepAsTheStretchTimesXi) {
+TEST(MdrAdhesionCriticalRadius, IsWhereTheProfileIsAsSteepAsTheStretchTimesTheControlFactor) {
   for (const Bond& bond : bonds()) {
     const Indenter indenter = bond.indenter();
     for (const auto& [control, xi] : {std::pair(Control::displacement, 1.0), std::pair(Control::force, 3.0)}) {
@@ -265,7 +265,7 @@ TEST(MdrPeelAtDisplacement, BringsBackTheEdge) {
       const double a = bond.between(share);
       const PeelState state = bond.peel(a);
       const PeelState back =
-          peel_at_displacement(indenter, bond.modulus, bond.surface_energy, critical, state.displacement_1d);
+          peel_at_displacement(indenter, {bond.modulus, bond.surface_energy}, critical, state.displacement_1d);
       // The displacement comes back to round-off, however flat or steep it is at the edge.
       EXPECT_LE(std::abs(back.displacement_1d - state.displacement_1d), 8.0 * k_epsilon * bond.length_scale(a))
           << bond << ", share = " << share;
@@ -290,7 +290,7 @@ TEST(MdrPeelAtForce, BringsBackTheEdge) {
     for (const double share : {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 0.01, 0.1, 0.3, 0.5, 0.9, 0.99, 1.0 - 1e-6, 1.0}) {
       const double a = std::lerp(critical, std::max(critical, bond.between(1.0)), share);
       const PeelState state = bond.peel(a);
-      const PeelState back = peel_at_force(indenter, bond.modulus, bond.surface_energy, critical, state.force);
+      const PeelState back = peel_at_force(indenter, {bond.modulus, bond.surface_energy}, critical, state.force);
       EXPECT_LE(std::abs(back.force - state.force), 8.0 * k_epsilon * bond.force_scale(a))
           << bond << ", share = " << share;
       EXPECT_GE(back.contact_radius, critical * (1.0 - 2.0 * k_epsilon)) << bond << ", share = " << share;
@@ -309,11 +309,11 @@ TEST(MdrPeel, StaysAtTheCriticalEdgeBelow) {
     const PeelState least = bond.peel(by_displacement);
     const PeelState weakest = bond.peel(by_force);
     for (const double further : {0.0, 1e-15, 1e-3, 1.0, 1e6}) {
-      const PeelState torn = peel_at_displacement(indenter, bond.modulus, bond.surface_energy, by_displacement,
+      const PeelState torn = peel_at_displacement(indenter, {bond.modulus, bond.surface_energy}, by_displacement,
                                                   least.displacement_1d - further * std::abs(least.displacement_1d));
       EXPECT_EQ(torn.contact_radius, by_displacement) << bond;
       EXPECT_EQ(torn.force, least.force) << bond;
-      const PeelState lost = peel_at_force(indenter, bond.modulus, bond.surface_energy, by_force,
+      const PeelState lost = peel_at_force(indenter, {bond.modulus, bond.surface_energy}, by_force,
                                            weakest.force - further * std::abs(weakest.force));
       EXPECT_EQ(lost.contact_radius, by_force) << bond;
       EXPECT_EQ(lost.displacement_1d, weakest.displacement_1d) << bond;
@@ -363,7 +363,7 @@ TEST(MdrStickingContact, HasTheDerivativesOfItsForce) {
         const Contact contact = bond.sticking(bond.radius, bond.overlap_max, overlap, a);
         EXPECT_EQ(contact.contact_radius, a);
         const double scale = bond.force_scale(a);
-        const double length = bond.length_scale(a) / bond.frame(overlap).by_overlap;
+        const double length = bond.length_scale(a) / bond.image(overlap).by_overlap;
         // Round-off of the displacement, a difference of overlaps, magnified by the slope.
         const double noise = scale + contact.by_overlap * (std::abs(overlap) + bond.overlap_max);
         expect_derivative(
@@ -393,7 +393,7 @@ TEST(MdrPeelingContact, HasTheDerivativesOfItsForce) {
       SCOPED_TRACE(::testing::Message() << bond << ", share = " << share);
       const double overlap = bond.overlap_at(state.displacement_1d);
       const Contact contact = bond.peeling(bond.radius, bond.overlap_max, overlap);
-      const double opening = bond.frame(overlap).by_overlap;
+      const double opening = bond.image(overlap).by_overlap;
       // Distances to the critical state and to the end of the profile.
       const Indenter indenter = bond.indenter();
       double room = state.displacement_1d - critical.displacement_1d;
@@ -405,30 +405,30 @@ TEST(MdrPeelingContact, HasTheDerivativesOfItsForce) {
           contact.by_overlap, [&](double x) { return bond.peeling(bond.radius, bond.overlap_max, x).force; }, overlap,
           room / opening, noise);
       const double softening =
-          peeling_softening(bond.frame(overlap), bond.modulus, bond.surface_energy, contact.contact_radius);
+          peeling_softening(bond.image(overlap), {bond.modulus, bond.surface_energy}, contact.contact_radius);
       const double noise_of_stiffness =
           noise / (std::abs(overlap) + bond.overlap_max) + std::abs(softening) * (std::abs(overlap) + bond.overlap_max);
       expect_derivative(
           softening, [&](double x) { return bond.peeling(bond.radius, bond.overlap_max, x).by_overlap; }, overlap,
           room / opening, noise_of_stiffness);
       // The share of that room which a unit of the other variables uses up: the displacement and the profile there.
-      const auto length_of = [&](const Frame::Change& change, double length) {
+      const auto length_of = [&](const Image::Change& change, double length) {
         const double speed =
-            std::abs(change.displacement) + std::max(indenter.height, profile_height(indenter, a)) *
-                                                (std::abs(change.height) + std::abs(change.half_width));
+            std::abs(change.displacement_1d) + std::max(indenter.height, profile_height(indenter, a)) *
+                                                   (std::abs(change.height) + std::abs(change.half_width));
         return std::min(length, room / speed);
       };
-      const Frame frame = bond.frame(overlap);
+      const Image image = bond.image(overlap);
       expect_derivative(
           contact.by_radius, [&](double x) { return bond.peeling(x, bond.overlap_max, overlap).force; }, bond.radius,
-          length_of(frame.by_radius, bond.radius_length), noise);
+          length_of(image.by_radius, bond.radius_length), noise);
       if (bond.max_length == 0.0) {
         EXPECT_EQ(contact.by_overlap_max, 0.0);
         continue;
       }
       expect_derivative(
           contact.by_overlap_max, [&](double x) { return bond.peeling(bond.radius, x, overlap).force; },
-          bond.overlap_max, length_of(frame.by_overlap_max, bond.max_length), noise);
+          bond.overlap_max, length_of(image.by_overlap_max, bond.max_length), noise);
     }
   }
 }
@@ -440,9 +440,9 @@ TEST(MdrPeelingContact, SoftensWithoutBoundTowardsPullOff) {
     const double room =
         indenter.profile == ElasticProfile::parabola ? critical : std::min(critical, indenter.half_width - critical);
     const auto stiffness = [&](double distance) {
-      Frame frame = bond.frame(0.0);
-      frame.displacement = bond.peel(critical + distance * room).displacement_1d;
-      return peeling_contact(frame, bond.modulus, bond.surface_energy, critical).by_overlap;
+      Image image = bond.image(0.0);
+      image.displacement_1d = bond.peel(critical + distance * room).displacement_1d;
+      return peeling_contact(image, {bond.modulus, bond.surface_energy}, critical).by_overlap;
     };
     // Like one over the distance of the edge from the critical one.
     EXPECT_NEAR(stiffness(1e-3) / stiffness(1e-2), 10.0, 1.0) << bond;
@@ -461,14 +461,14 @@ TEST(MdrEdgePress, IsTheRateAtWhichTheSpringsAtAStickingEdgeArePressed) {
       const double cosine = is_parabola ? 1.0 : std::sqrt((1.0 - a / b) * (1.0 + a / b));
       const double room = is_parabola ? 1.0 : 1.0 - a / b;
       const double overlap = bond.overlap_at(profile_height(indenter, a));
-      const Frame frame = bond.frame(overlap);
+      const Image image = bond.image(overlap);
       const auto press = [&](double r, double m, double x) {
-        const Frame at = bond.frame_of(r, m, x);
-        return at.displacement - profile_height(at.indenter, a);
+        const Image at = bond.image_of(r, m, x);
+        return at.displacement_1d - profile_height(at.indenter, a);
       };
       SCOPED_TRACE(::testing::Message() << bond << ", share = " << share);
-      const double noise = bond.length_scale(a) + frame.by_overlap * (std::abs(overlap) + bond.overlap_max);
-      const EdgePress by_radius = edge_press(frame, frame.by_radius, a);
+      const double noise = bond.length_scale(a) + image.by_overlap * (std::abs(overlap) + bond.overlap_max);
+      const EdgePress by_radius = edge_press(image, image.by_radius, a);
       expect_derivative(
           by_radius.by_overlap / cosine, [&](double x) { return press(bond.radius, bond.overlap_max, x); }, overlap,
           bond.length_scale(a), noise);
@@ -477,7 +477,7 @@ TEST(MdrEdgePress, IsTheRateAtWhichTheSpringsAtAStickingEdgeArePressed) {
           room * bond.radius_length, noise);
       if (bond.max_length == 0.0) continue;
       expect_derivative(
-          edge_press(frame, frame.by_overlap_max, a).by_radius / cosine,
+          edge_press(image, image.by_overlap_max, a).by_radius / cosine,
           [&](double x) { return press(bond.radius, x, overlap); }, bond.overlap_max, room * bond.max_length, noise);
     }
   }
@@ -528,7 +528,7 @@ TEST(MdrStickingContact, GoesOverIntoTheContactWithoutAdhesionWithoutAJump) {
       }
       SCOPED_TRACE(::testing::Message() << bond << ", share = " << share);
       // Round-off of the overlap, a difference of large ones, over its unit.
-      const double distance = profile_height(indenter, a) / bond.frame(overlap).by_overlap;
+      const double distance = profile_height(indenter, a) / bond.image(overlap).by_overlap;
       const double round_off = k_round_off * (1.0 + (std::abs(overlap) + bond.overlap_max) / distance);
       EXPECT_LE(relative_error(stuck.force, free.force), 2.0 * round_off);
       EXPECT_LE(relative_error(a, free.contact_radius), round_off);
@@ -555,7 +555,7 @@ TEST(MdrAdhesiveEnergy, HasTheForceForDerivativeWhileTheEdgeSticks) {
         SCOPED_TRACE(::testing::Message() << bond << ", share = " << share << ", part = " << part);
         const double overlap = bond.overlap_at(profile_height(bond.indenter(), a) - part * bond.stretch(a));
         const double force = bond.sticking(bond.radius, bond.overlap_max, overlap, a).force;
-        const double length = bond.length_scale(a) / bond.frame(overlap).by_overlap;
+        const double length = bond.length_scale(a) / bond.image(overlap).by_overlap;
         // Large steps suffice, because the energy is quadratic in the overlap.
         const double difference = central_difference([&](double x) { return bond.energy(x, a); }, overlap, length);
         EXPECT_NEAR(force, difference,
@@ -582,7 +582,7 @@ double peeling_work(const Bond& bond, double from, double to) {
         return bond.peel(a).force * by * 2.0 * x;
       },
       root(from), root(to));
-  return work / bond.frame(0.0).by_overlap;
+  return work / bond.image(0.0).by_overlap;
 }
 
 TEST(MdrAdhesiveEnergy, ChangesByTheWorkOfThePeelingForce) {
@@ -593,7 +593,7 @@ TEST(MdrAdhesiveEnergy, ChangesByTheWorkOfThePeelingForce) {
       const double high = bond.energy(bond.overlap_at(bond.peel(a).displacement_1d), a);
       const double low = bond.energy(bond.overlap_at(bond.peel(last).displacement_1d), last);
       // Magnitudes of the terms whose differences are the energies.
-      const double opening = bond.frame(0.0).by_overlap;
+      const double opening = bond.image(0.0).by_overlap;
       const double scale = bond.force_scale(a) * bond.length_scale(a) / opening;
       EXPECT_NEAR(high - low, peeling_work(bond, last, a),
                   1e-13 * scale * (1.0 + bond.overlap_max * opening / bond.length_scale(a)))
@@ -606,7 +606,7 @@ TEST(MdrAdhesiveEnergy, ChangesByTheWorkOfTheForceOverACycleOfSticking) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   for (const Bond& bond : bonds()) {
     const double a = bond.between(0.5);
-    const double opening = bond.frame(0.0).by_overlap;
+    const double opening = bond.image(0.0).by_overlap;
     const double low = bond.overlap_at(bond.peel(a).displacement_1d);
     const double high = bond.overlap_at(profile_height(bond.indenter(), a));
     const double work = integrator.integrate(
@@ -624,14 +624,14 @@ TEST(MdrAdhesiveEnergy, OfThePeelingSpringsFallsByTheSurfaceThatOpens) {
       const double a = bond.between(share);
       const Indenter indenter = bond.indenter();
       const double overlap = bond.overlap_at(bond.peel(a).displacement_1d);
-      const Frame frame = bond.frame(overlap);
-      const auto springs = [&](double x) { return adhesive_energy(frame, bond.modulus, 0.0, x) * frame.by_overlap; };
+      const Image image = bond.image(overlap);
+      const auto springs = [&](double x) { return adhesive_energy(image, {bond.modulus, 0.0}, x) * image.by_overlap; };
       const double room = indenter.profile == ElasticProfile::parabola ? a : std::min(a, indenter.half_width - a);
       const double difference = central_difference(springs, a, 0.01 * room);
       const double expected = 2.0 * pi * a * bond.surface_energy;
       // The step is a hundredth of the room: round-off of the springs' terms over it, and of the edge's displacement.
       const double scale = bond.force_scale(a) * bond.length_scale(a) / room +
-                           bond.force_scale(a) * frame.by_overlap * bond.overlap_max / a;
+                           bond.force_scale(a) * image.by_overlap * bond.overlap_max / a;
       EXPECT_NEAR(difference, expected, 1e-12 * expected + 1e-13 * scale) << bond << ", share = " << share;
     }
   }
@@ -641,10 +641,10 @@ TEST(MdrAdhesiveEnergy, AtPullOffIsThePrintedOneOfTheParabola) {
   for (const double dg : {1e-8, 1e-3, 10.0}) {
     const Indenter indenter = elastic_indenter(ElasticProfile::parabola, 1.1);
     const auto energy = [&](Control control) {
-      const double a = critical_radius(indenter, k_modulus, dg, control);
-      const double overlap = peel_state(indenter, k_modulus, dg, a).displacement_1d;
+      const double a = critical_radius(indenter, {k_modulus, dg}, control);
+      const double overlap = peel_state(indenter, {k_modulus, dg}, a).displacement_1d;
       const double unit = k_modulus * std::pow(a, 5) / (1.1 * 1.1);
-      return adhesive_energy(elastic_frame(ElasticProfile::parabola, 1.1, overlap), k_modulus, dg, a) / unit;
+      return adhesive_energy(elastic_image(ElasticProfile::parabola, 1.1, overlap), {k_modulus, dg}, a) / unit;
     };
     EXPECT_LE(relative_error(energy(Control::displacement), 3.2), 8.0 * k_round_off) << "dg = " << dg;
     EXPECT_LE(relative_error(energy(Control::force), -16.0 / 45.0), 8.0 * k_round_off) << "dg = " << dg;
@@ -664,16 +664,16 @@ TEST(MdrAdhesionLimit, OfVanishingSurfaceEnergyIsTheContactWithoutAdhesion) {
   for (const auto profile : {ElasticProfile::ellipse, ElasticProfile::parabola}) {
     const Indenter indenter = elastic_indenter(profile, 1.1);
     for (const Control control : {Control::displacement, Control::force}) {
-      EXPECT_EQ(critical_radius(indenter, k_modulus, 0.0, control), 0.0);
+      EXPECT_EQ(critical_radius(indenter, {k_modulus, 0.0}, control), 0.0);
     }
     for (const double overlap : {1e-9, 1e-3, 0.3}) {
       const Contact free = elastic_contact(profile, k_modulus, 1.1, overlap);
       for (const double dg : {0.0, 1e-30, 1e-20}) {
-        const double a_c = critical_radius(indenter, k_modulus, dg, Control::displacement);
-        const Contact peels = peeling_contact(elastic_frame(profile, 1.1, overlap), k_modulus, dg, a_c);
+        const double a_c = critical_radius(indenter, {k_modulus, dg}, Control::displacement);
+        const Contact peels = peeling_contact(elastic_image(profile, 1.1, overlap), {k_modulus, dg}, a_c);
         // The force falls with the square root of the surface energy.
         const double fall =
-            2.0 * k_modulus * free.contact_radius * critical_stretch(k_modulus, dg, free.contact_radius);
+            2.0 * k_modulus * free.contact_radius * critical_stretch({k_modulus, dg}, free.contact_radius);
         EXPECT_NEAR(peels.force, free.force, 2.0 * fall + k_round_off * free.force)
             << "dg = " << dg << ", delta = " << overlap;
         EXPECT_NEAR(peels.by_overlap, free.by_overlap, 2.0 * fall / overlap + k_round_off * free.by_overlap)
@@ -687,11 +687,11 @@ TEST(MdrAdhesionLimit, OfAHugeSurfaceEnergyHoldsTheEllipseByItsWholeWidth) {
   const Indenter indenter = elastic_indenter(ElasticProfile::ellipse, 1.1);
   double last = 0.0;
   for (const double dg : {1.0, 1e3, 1e6, 1e12, 1e100}) {
-    const double a = critical_radius(indenter, k_modulus, dg, Control::displacement);
+    const double a = critical_radius(indenter, {k_modulus, dg}, Control::displacement);
     EXPECT_LE(a, 1.1) << "dg = " << dg;
     EXPECT_GE(a, last) << "dg = " << dg;
     last = a;
-    const PeelState state = peel_state(indenter, k_modulus, dg, a);
+    const PeelState state = peel_state(indenter, {k_modulus, dg}, a);
     EXPECT_TRUE(std::isfinite(state.force) && state.force < 0.0) << "dg = " << dg;
     // b - a = a^3/(k (a + b)) with k = pi dg/(8 E*).
     const double k = pi * dg / (8.0 * k_modulus);
@@ -709,12 +709,12 @@ TEST(MdrAdhesion, IsHomogeneous) {
         scaled.half_width *= length;
         const double modulus = stress * bond.modulus;
         const double dg = stress * length * bond.surface_energy;
-        const double a_c = critical_radius(scaled, modulus, dg, Control::displacement);
+        const double a_c = critical_radius(scaled, {modulus, dg}, Control::displacement);
         EXPECT_LE(relative_error(a_c, length * bond.critical()), k_round_off) << bond;
         for (const double share : k_shares) {
           const double a = bond.between(share);
           const PeelState unit = bond.peel(a);
-          const PeelState state = peel_at_displacement(scaled, modulus, dg, a_c, length * unit.displacement_1d);
+          const PeelState state = peel_at_displacement(scaled, {modulus, dg}, a_c, length * unit.displacement_1d);
           // Near pull-off the edge moves with the square root of round-off; this factor is the slope of the force over
           // that of the displacement there.
           EXPECT_NEAR(state.force / (stress * length * length), unit.force, 1e-11 * bond.force_scale(a))

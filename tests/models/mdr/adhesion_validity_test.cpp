@@ -98,7 +98,7 @@ const WindowCase k_windows[] = {{{ElasticProfile::ellipse, 0.08, 0.7}, 1.1, 0.02
                                 {{ElasticProfile::parabola, 4.0, 1.0}, 1.1, 0.16, 0.3}};
 
 AdhesionValidity validity(const WindowCase& c, double surface_energy, Control control) {
-  return adhesion_validity(critical_radius(c.indenter, c.composite_modulus, surface_energy, control), c.peak_radius,
+  return adhesion_validity(critical_radius(c.indenter, {c.composite_modulus, surface_energy}, control), c.peak_radius,
                            plastic_zone_size(c.composite_modulus, surface_energy, c.yield_stress));
 }
 
@@ -108,10 +108,12 @@ TEST(MdrAdhesionWindow, EndsWhereTheConditionsTurn) {
     for (const Control control : {Control::displacement, Control::force}) {
       const auto [least, greatest] =
           adhesion_window(c.indenter, c.composite_modulus, c.yield_stress, c.peak_radius, control);
-      EXPECT_LE(relative_error(critical_radius(c.indenter, c.composite_modulus, least, control), c.peak_radius), 1e-14);
-      const double zone = plastic_zone_size(c.composite_modulus, greatest, c.yield_stress);
-      EXPECT_LE(relative_error(2.0 * critical_radius(c.indenter, c.composite_modulus, greatest, control), 15.0 * zone),
+      EXPECT_LE(relative_error(critical_radius(c.indenter, {c.composite_modulus, least}, control), c.peak_radius),
                 1e-14);
+      const double zone = plastic_zone_size(c.composite_modulus, greatest, c.yield_stress);
+      EXPECT_LE(
+          relative_error(2.0 * critical_radius(c.indenter, {c.composite_modulus, greatest}, control), 15.0 * zone),
+          1e-14);
       EXPECT_EQ(validity(c, least * (1.0 - hair), control), AdhesionValidity::peak_failure);
       EXPECT_NE(validity(c, least * (1.0 + hair), control), AdhesionValidity::peak_failure);
       WindowCase convex = c;

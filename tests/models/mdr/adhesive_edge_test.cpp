@@ -19,9 +19,9 @@ constexpr Adhesion k_adhesion{1.0, 1e-5};
 struct Space {
   const char* name;
   UnloadingShape dent{};  ///< of an elastic contact: no height
-  [[nodiscard]] Frame at(double overlap) const {
-    if (dent.height == 0.0) return elastic_frame(ElasticProfile::parabola, 1.0, overlap);
-    return unloading_frame(dent, dent.overlap_max - dent.recovery + overlap);
+  [[nodiscard]] Image at(double overlap) const {
+    if (dent.height == 0.0) return elastic_image(ElasticProfile::parabola, 1.0, overlap);
+    return unloading_image(dent, dent.overlap_max - dent.recovery + overlap);
   }
 };
 
@@ -55,11 +55,11 @@ double overlap_of_following(const Space& space, const AdhesiveEdge& edge) {
 TEST(MdrAdhesiveEdge, FollowsAgainWhereItsForceIsThatWithoutAdhesion) {
   for (const Space& space : spaces()) {
     const AdhesiveEdge edge = stuck_at(wide_radius(space));
-    const Frame frame = space.at(overlap_of_following(space, edge));
-    const Contact stuck = sticking_contact(frame, k_adhesion.composite_modulus, edge.radius);
-    EXPECT_LE(relative_error(free_contact_radius(frame.indenter, frame.displacement), edge.radius), 1e-10)
+    const Image image = space.at(overlap_of_following(space, edge));
+    const Contact stuck = sticking_contact(image, k_adhesion.composite_modulus, edge.radius);
+    EXPECT_LE(relative_error(free_contact_radius(image.indenter, image.displacement_1d), edge.radius), 1e-10)
         << space.name;
-    EXPECT_LE(relative_error(stuck.force, free_force(frame.indenter, 1.0, edge.radius)), 1e-10) << space.name;
+    EXPECT_LE(relative_error(stuck.force, free_force(image.indenter, 1.0, edge.radius)), 1e-10) << space.name;
   }
 }
 
@@ -74,11 +74,11 @@ TEST(MdrAdhesiveEdge, HasNoJumpOfTheForceWhereItBeginsToPeel) {
   for (const Space& space : spaces()) {
     const AdhesiveEdge edge = stuck_at(wide_radius(space));
     const PullOff limits = pull_off_in(space);
-    const Frame frame = space.at(overlap_of_peeling(space, edge));
+    const Image image = space.at(overlap_of_peeling(space, edge));
     const auto peeling = edge.torn(limits.by_displacement);
     ASSERT_TRUE(peeling && peeling->peels()) << space.name;
-    const Contact before = sticking_contact(frame, k_adhesion.composite_modulus, edge.radius);
-    const Contact after = peeling_contact(frame, k_adhesion, limits, false);
+    const Contact before = sticking_contact(image, k_adhesion.composite_modulus, edge.radius);
+    const Contact after = peeling_contact(image, k_adhesion, limits, false);
     EXPECT_LE(relative_error(after.force, before.force), 1e-10) << space.name;
     EXPECT_LE(relative_error(after.contact_radius, before.contact_radius), 1e-10) << space.name;
   }
@@ -102,11 +102,11 @@ TEST(MdrAdhesiveEdge, PullsOffWhereItsGuardIsZeroUnderEitherControl) {
     const PullOff limits = pull_off_in(space);
     EXPECT_EQ(pull_off_guard(limits, limits.by_force.force), 0.0);
     EXPECT_GT(pull_off_guard(limits, 0.5 * limits.by_force.force), 0.0);
-    Frame frame = space.at(0.0);
-    frame.displacement = limits.by_displacement.displacement_1d;
-    EXPECT_EQ(pull_off_guard(limits, frame), 0.0);
-    frame.displacement *= 1.01;
-    EXPECT_LT(pull_off_guard(limits, frame), 0.0);
+    Image image = space.at(0.0);
+    image.displacement_1d = limits.by_displacement.displacement_1d;
+    EXPECT_EQ(pull_off_guard(limits, image), 0.0);
+    image.displacement_1d *= 1.01;
+    EXPECT_LT(pull_off_guard(limits, image), 0.0);
   }
 }
 
@@ -138,9 +138,9 @@ TEST(MdrAdhesiveEdge, IsWhereAForceHoldsIt) {
   for (const Space& space : spaces()) {
     const double a = wide_radius(space);
     for (const double overlap : {-1e-3, 0.0, 1e-3}) {
-      const Frame frame = space.at(overlap);
-      const double force = sticking_contact(frame, k_adhesion.composite_modulus, a).force;
-      EXPECT_NEAR(sticking_displacement(frame.indenter, 1.0, a, force), frame.displacement, 1e-14) << space.name;
+      const Image image = space.at(overlap);
+      const double force = sticking_contact(image, k_adhesion.composite_modulus, a).force;
+      EXPECT_NEAR(sticking_displacement(image.indenter, 1.0, a, force), image.displacement_1d, 1e-14) << space.name;
     }
     EXPECT_EQ(sticking_displacement(space.at(0.0).indenter, 1.0, 0.0, 1.0), 0.0) << space.name;
   }
@@ -149,9 +149,9 @@ TEST(MdrAdhesiveEdge, IsWhereAForceHoldsIt) {
 TEST(MdrAdhesiveEdge, GivesUpNoEnergyWhereItBeginsToPeel) {
   for (const Space& space : spaces()) {
     const AdhesiveEdge edge = stuck_at(wide_radius(space));
-    const Frame frame = space.at(overlap_of_peeling(space, edge));
+    const Image image = space.at(overlap_of_peeling(space, edge));
     // In equilibrium the energy is stationary in the contact radius.
-    const auto energy = [&](double a) { return adhesive_energy(frame, 1.0, k_adhesion.surface_energy, a); };
+    const auto energy = [&](double a) { return adhesive_energy(image, {1.0, k_adhesion.surface_energy}, a); };
     const double slope = central_difference(energy, edge.radius, 1e-4 * edge.radius);
     EXPECT_LE(std::abs(slope) * edge.radius, 1e-6 * std::abs(energy(edge.radius))) << space.name;
   }
@@ -165,8 +165,8 @@ TEST(MdrAdhesiveEdge, IsSetBackByRoundOffAlone) {
     EXPECT_LT(moved.radius, edge.radius) << space.name;
     EXPECT_GE(moved.radius, edge.radius * (1.0 - 1e-8)) << space.name;
     // After the move, the edge is no longer past the displacement at which it would peel.
-    const Frame frame = space.at(overlap_of_peeling(space, edge));
-    EXPECT_GT(peel_guard(moved, frame, k_adhesion), peel_guard(edge, frame, k_adhesion)) << space.name;
+    const Image image = space.at(overlap_of_peeling(space, edge));
+    EXPECT_GT(peel_guard(moved, image, k_adhesion), peel_guard(edge, image, k_adhesion)) << space.name;
     EXPECT_EQ(edge.set_back(indenter, 1e-3).radius, edge.radius) << space.name;
     EXPECT_EQ(stuck_at(0.0).set_back(indenter, 1e-14).radius, 0.0) << space.name;
   }
@@ -174,12 +174,12 @@ TEST(MdrAdhesiveEdge, IsSetBackByRoundOffAlone) {
 
 TEST(MdrAdhesiveEdge, IsPressedAtARateBetweenMinusOneAndOne) {
   for (const Space& space : spaces()) {
-    const Frame frame = space.at(1e-3);
+    const Image image = space.at(1e-3);
     const double a = wide_radius(space);
-    EXPECT_EQ(press_rate(frame, frame.by_radius, a, 0.0, 0.0), 0.0);
-    EXPECT_EQ(press_rate(frame, frame.by_radius, a, 2.0, 0.0), 1.0);
-    EXPECT_EQ(press_rate(frame, frame.by_radius, a, -2.0, 0.0), -1.0);
-    const double both = press_rate(frame, frame.by_radius, a, 1.0, -1.0);
+    EXPECT_EQ(press_rate(image, image.by_radius, a, 0.0, 0.0), 0.0);
+    EXPECT_EQ(press_rate(image, image.by_radius, a, 2.0, 0.0), 1.0);
+    EXPECT_EQ(press_rate(image, image.by_radius, a, -2.0, 0.0), -1.0);
+    const double both = press_rate(image, image.by_radius, a, 1.0, -1.0);
     EXPECT_LE(std::abs(both), 1.0) << space.name;
   }
 }
@@ -189,8 +189,8 @@ TEST(MdrAdhesiveEdge, WithoutSurfaceEnergyTearsWhereItWouldFollow) {
   for (const Space& space : spaces()) {
     const AdhesiveEdge edge = stuck_at(0.01);
     for (const double overlap : {-1e-3, 1e-3}) {
-      const Frame frame = space.at(overlap);
-      EXPECT_EQ(peel_guard(edge, frame, none), follow_guard(edge, frame, none)) << space.name;
+      const Image image = space.at(overlap);
+      EXPECT_EQ(peel_guard(edge, image, none), follow_guard(edge, image, none)) << space.name;
     }
   }
 }
@@ -198,13 +198,13 @@ TEST(MdrAdhesiveEdge, WithoutSurfaceEnergyTearsWhereItWouldFollow) {
 TEST(MdrAdhesiveEdge, IsAsStiffUnpeeledAsIfItStuck) {
   for (const Space& space : spaces()) {
     const PullOff limits = pull_off_in(space);
-    const Frame frame = space.at(overlap_of_peeling(space, stuck_at(wide_radius(space))));
-    const Contact peeling = peeling_contact(frame, k_adhesion, limits, false);
-    const Contact stuck = sticking_contact(frame, 1.0, peeling.contact_radius);
-    const double unpeeled = unpeeled_stiffness({Edge::peeling, 0.0}, peeling, 1.0, frame.by_overlap);
+    const Image image = space.at(overlap_of_peeling(space, stuck_at(wide_radius(space))));
+    const Contact peeling = peeling_contact(image, k_adhesion, limits, false);
+    const Contact stuck = sticking_contact(image, 1.0, peeling.contact_radius);
+    const double unpeeled = reference_stiffness({Edge::peeling, 0.0}, peeling, 1.0, image.by_overlap);
     EXPECT_LE(relative_error(unpeeled, stuck.by_overlap), 1e-12) << space.name;
     EXPECT_LT(peeling.by_overlap, unpeeled) << space.name;
-    EXPECT_EQ(unpeeled_stiffness(stuck_at(0.1), peeling, 1.0, 1.0), std::abs(peeling.by_overlap)) << space.name;
+    EXPECT_EQ(reference_stiffness(stuck_at(0.1), peeling, 1.0, 1.0), std::abs(peeling.by_overlap)) << space.name;
   }
 }
 

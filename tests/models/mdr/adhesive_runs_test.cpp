@@ -362,12 +362,12 @@ TEST(MdrAdhesiveContact, HasTheRadiusBetweenThatWithoutAdhesionAndThatInEquilibr
   const auto overlaps = result.outputs("axial.overlap");
   const auto radii = result.outputs("axial.contact_radius");
   const mdr::Indenter indenter = mdr::elastic_indenter(mdr::ElasticProfile::parabola, 1.0);
-  const double critical = mdr::critical_radius(indenter, k_modulus, dg, Control::displacement);
+  const double critical = mdr::critical_radius(indenter, {k_modulus, dg}, Control::displacement);
   double sticking = 0;
   for (std::size_t i = 0; i < radii.size(); ++i) {
     if (radii[i] == 0.0) continue;
     const double free = mdr::free_contact_radius(indenter, overlaps[i]);
-    const double peeling = mdr::peel_at_displacement(indenter, k_modulus, dg, critical, overlaps[i]).contact_radius;
+    const double peeling = mdr::peel_at_displacement(indenter, {k_modulus, dg}, critical, overlaps[i]).contact_radius;
     EXPECT_GE(radii[i], free * (1.0 - 1e-13)) << "output " << i;
     EXPECT_LE(radii[i], peeling * (1.0 + 1e-13)) << "output " << i;
     sticking += radii[i] > free * (1.0 + 1e-3) && radii[i] < peeling * (1.0 - 1e-3);

@@ -25,12 +25,12 @@ VolumeBalance balance(double n, double displacement, double r, double bulk_compl
   const double virial = n * contact.force * (1.0 - displacement);
   VolumeSum sum(bulk_compliance, virial, virial);
   static_cast<void>(sum.add({n, contact, displacement, overlap, rate, 0.0}, 1.0 + r));
-  return sum.balance(r);
+  return sum.finish(r);
 }
 
 TEST(MdrVolumeBalance, OfAParticleWithoutContactsIsThatOfASphere) {
   for (const double r : {0.0, 1e-9, 0.01, 0.3}) {
-    const VolumeBalance at = VolumeSum(0.5, 0.0, 0.0).balance(r);
+    const VolumeBalance at = VolumeSum(0.5, 0.0, 0.0).finish(r);
     EXPECT_NEAR(at.value, (std::pow(1.0 + r, 3) - 1.0) / 3.0, 4 * k_epsilon) << r;
     EXPECT_DOUBLE_EQ(at.by_radius, (1.0 + r) * (1.0 + r)) << r;
     EXPECT_DOUBLE_EQ(at.free_surface_at_rest(r), 1.0) << r;
@@ -69,7 +69,7 @@ TEST(MdrVolumeBalance, OfAnIncompressibleParticleTurnsCapsIntoGrowth) {
 TEST(MdrVolumeBalance, CompressesTheParticleByTheRootOfAQuadraticEquation) {
   for (const double w : {0.0, 1e-12, 0.1, 0.25}) {
     VolumeBalance at;
-    at.relative_compression = w;
+    at.compression_of_all = w;
     const double v = at.volume_ratio();
     EXPECT_NEAR(v * v - v + w, 0.0, 2 * k_epsilon) << w;
     EXPECT_GE(v, 0.5);
@@ -78,8 +78,8 @@ TEST(MdrVolumeBalance, CompressesTheParticleByTheRootOfAQuadraticEquation) {
 
 TEST(MdrVolumeBalance, IsUndefinedBelowHalfTheVolume) {
   const double half = 0.25 / (0.75 * std::numbers::inv_pi);
-  EXPECT_GT(VolumeSum(1.0, half, 0.999 * half).balance(0.0).under_root, 0.0);
-  EXPECT_LE(VolumeSum(1.0, half, 1.001 * half).balance(0.0).under_root, 0.0);
+  EXPECT_GT(VolumeSum(1.0, half, 0.999 * half).finish(0.0).discriminant, 0.0);
+  EXPECT_LE(VolumeSum(1.0, half, 1.001 * half).finish(0.0).discriminant, 0.0);
 }
 
 TEST(MdrRadiusRule, SaysWhichContactsTakePart) {

@@ -103,12 +103,12 @@ TEST(FreeCentre, NeedsNoUnknownWhereSymmetryHoldsIt) {
 }
 
 TEST(FreeCentre, MovesOnlyInWaysThatKeepTheSymmetry) {
-  const auto free_count = [](const CheckedScenario& scenario) {
+  const auto free_directions = [](const CheckedScenario& scenario) {
     const Scene scene = make_scene(scenario);
     return std::ranges::count(scene.system->unknowns(), Unknown::Kind::algebraic, &Unknown::kind);
   };
-  EXPECT_EQ(free_count(tripod(mdr_particle(), {0.1})), 1);
-  EXPECT_EQ(free_count(crooked_tripod(mdr_particle(), {0.1})), 3);
+  EXPECT_EQ(free_directions(tripod(mdr_particle(), {0.1})), 1);
+  EXPECT_EQ(free_directions(crooked_tripod(mdr_particle(), {0.1})), 3);
 }
 
 TEST(FreeCentre, BalancesTheForcesInEveryRow) {

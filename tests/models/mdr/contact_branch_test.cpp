@@ -167,7 +167,7 @@ TEST(MdrContactBranch, GivesBackLessThanWasDoneOnItWhereItYielded) {
 TEST(MdrContactBranch, StandsWhereAForceWantsIt) {
   for_each_state(cases(), [](const Case& c, double overlap) {
     const double force = c.branch.contact(c.law, k_growth, overlap).force;
-    const double displacement = c.branch.displacement_under(c.law, k_growth, force, 0.9 * overlap - k_growth);
+    const double displacement = c.branch.approach_under(c.law, k_growth, force, 0.9 * overlap - k_growth);
     EXPECT_NEAR(displacement, overlap - k_growth, 1e-12);
   });
 }
@@ -175,8 +175,8 @@ TEST(MdrContactBranch, StandsWhereAForceWantsIt) {
 TEST(MdrContactBranch, LeavesAnOpenWallWhereItRestsUntilTheParticleGrowsAgainstIt) {
   const ContactLaw law = law_of(100.0);
   const ContactBranch open = ContactBranch{}.made().lost(-0.01);
-  EXPECT_EQ(open.displacement_under(law, 0.005, 0.0, 0.0), -0.01);
-  EXPECT_EQ(open.displacement_under(law, 0.03, 0.0, 0.0), -0.03);
+  EXPECT_EQ(open.approach_under(law, 0.005, 0.0, 0.0), -0.01);
+  EXPECT_EQ(open.approach_under(law, 0.03, 0.0, 0.0), -0.03);
 }
 
 TEST(MdrContactBranch, IsNeverSofterThanATouchWhereItsStiffnessIsAsked) {
@@ -186,10 +186,10 @@ TEST(MdrContactBranch, IsNeverSofterThanATouchWhereItsStiffnessIsAsked) {
     const Contact none = c.branch.contact(c.law, k_growth, touch);
     const Contact stiff = c.branch.stiff_contact(c.law, k_growth, touch, none);
     EXPECT_GT(stiff.by_overlap, 0.0) << c.name;
-    EXPECT_GE(c.branch.tangent_stiffness(c.law, none), c.law.least_stiffness()) << c.name;
+    EXPECT_GE(c.branch.regularized_stiffness(c.law, none), c.law.least_stiffness()) << c.name;
     const Contact deep = c.branch.contact(c.law, k_growth, c.overlaps[0]);
     EXPECT_EQ(c.branch.stiff_contact(c.law, k_growth, c.overlaps[0], deep).force, deep.force) << c.name;
-    EXPECT_EQ(c.branch.tangent_stiffness(c.law, deep), deep.by_overlap) << c.name;
+    EXPECT_EQ(c.branch.regularized_stiffness(c.law, deep), deep.by_overlap) << c.name;
   }
 }
 
@@ -259,7 +259,7 @@ TEST(MdrContactBranch, EndsWhereItsLawDoes) {
   law.elastic_profile = ElasticProfile::ellipse;
   const ContactBranch elastic = ContactBranch{}.made();
   EXPECT_THROW(static_cast<void>(elastic.contact(law, 0.0, 2.1)), std::domain_error);
-  EXPECT_THROW(static_cast<void>(yielded(law).displacement_under(law, 0.0, 100.0, 0.1)), std::domain_error);
+  EXPECT_THROW(static_cast<void>(yielded(law).approach_under(law, 0.0, 100.0, 0.1)), std::domain_error);
 }
 
 TEST(MdrContactBranch, WithAStuckEdgeBearsWhatItBoreWhereItStuck) {
@@ -274,7 +274,7 @@ TEST(MdrContactBranch, WithAStuckEdgeBearsWhatItBoreWhereItStuck) {
     const double less = overlap - 0.05 * (overlap - c.branch.touching_overlap(c.law, k_growth));
     EXPECT_LT(stuck.contact(c.law, k_growth, less).force, c.branch.contact(c.law, k_growth, less).force) << c.name;
     const double force = stuck.contact(c.law, k_growth, less).force;
-    EXPECT_NEAR(stuck.displacement_under(c.law, k_growth, force, 0.0), less - k_growth, 1e-12) << c.name;
+    EXPECT_NEAR(stuck.approach_under(c.law, k_growth, force, 0.0), less - k_growth, 1e-12) << c.name;
   }
 }
 

@@ -44,7 +44,7 @@ std::vector<Case> cases() {
                         {indenter, k_modulus, contact.contact_radius, overlap},
                         contact.force});
       for (const double surface_energy : {1e-9, 1e-3}) {
-        const PeelState peel = peel_state(indenter, k_modulus, surface_energy, contact.contact_radius);
+        const PeelState peel = peel_state(indenter, {k_modulus, surface_energy}, contact.contact_radius);
         result.push_back({"peeling " + name + " at " + std::to_string(overlap),
                           {indenter, k_modulus, peel.contact_radius, peel.displacement_1d},
                           peel.force});
@@ -52,7 +52,7 @@ std::vector<Case> cases() {
       const double pulled = 0.7 * overlap;
       result.push_back({"sticking " + name + " at " + std::to_string(overlap),
                         {indenter, k_modulus, contact.contact_radius, pulled},
-                        sticking_contact(elastic_frame(shape, 1.05, pulled), k_modulus, contact.contact_radius).force});
+                        sticking_contact(elastic_image(shape, 1.05, pulled), k_modulus, contact.contact_radius).force});
     }
   }
   for (const Dent& dent : dents()) {
@@ -64,15 +64,15 @@ std::vector<Case> cases() {
                       {unloading_indenter(shape), modulus, shape.contact_radius_max, 0.5 * shape.height},
                       dent.plastic(dent.grain.radius, dent.overlap_max).force});
     for (const double u : {0.1, 0.6, 0.95}) {
-      const Frame frame = unloading_frame(shape, dent.overlap_at(u));
+      const Image image = unloading_image(shape, dent.overlap_at(u));
       const Contact contact = dent.unloading(dent.grain.radius, dent.overlap_max, dent.overlap_at(u));
       result.push_back({"unloading E/Y = " + name,
-                        {frame.indenter, modulus, contact.contact_radius, frame.displacement},
+                        {image.indenter, modulus, contact.contact_radius, image.displacement_1d},
                         contact.force});
       const double a = shape.contact_radius_max * (1.0 - 0.2 * u);
       result.push_back({"sticking E/Y = " + name,
-                        {frame.indenter, modulus, a, frame.displacement},
-                        sticking_contact(frame, modulus, a).force});
+                        {image.indenter, modulus, a, image.displacement_1d},
+                        sticking_contact(image, modulus, a).force});
     }
   }
   return result;
@@ -91,10 +91,10 @@ TEST(MdrContactProfile, MeetsTheReferenceOfAnUnloadingContact) {
   const Material material = grain.material();
   const UnloadingShape shape = unloading_shape(material, grain.radius, 0.25, -0.0127);
   const double overlap = 0.25 - 0.004;
-  const Frame frame = unloading_frame(shape, overlap);
-  const ContactProfile profile{frame.indenter, material.composite_modulus,
+  const Image image = unloading_image(shape, overlap);
+  const ContactProfile profile{image.indenter, material.composite_modulus,
                                unloading_contact(shape, material.composite_modulus, overlap).contact_radius,
-                               frame.displacement};
+                               image.displacement_1d};
   const auto radii = table.column("r_over_R0");
   const auto compare = [&](const char* column, auto&& value, double end, double tolerance) {
     const auto expected = table.column(column);

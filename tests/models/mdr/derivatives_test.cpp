@@ -78,9 +78,10 @@ TEST(MdrDerivatives, OfTheUnloadingShapeAreExact) {
           by_radius, [&](double x) { return dent.shape_of(x, m).*value; }, R, dent.radius_length);
     };
     const S shape = dent.shape();
-    expect_derivatives(&S::pressure, shape.pressure * shape.pressure_by_max, shape.pressure * shape.pressure_by_radius);
-    expect_derivatives(&S::contact_radius_max, shape.contact_radius_max * shape.contact_radius_by_max,
-                       shape.contact_radius_max * shape.contact_radius_by_radius);
+    expect_derivatives(&S::pressure, shape.pressure * shape.log_pressure_by_max,
+                       shape.pressure * shape.log_pressure_by_radius);
+    expect_derivatives(&S::contact_radius_max, shape.contact_radius_max * shape.log_contact_radius_by_max,
+                       shape.contact_radius_max * shape.log_contact_radius_by_radius);
     expect_derivatives(&S::rho, shape.rho_by_max, shape.rho_by_radius);
   }
 }

@@ -27,15 +27,15 @@ void press(FreeCentre& centre, const std::vector<double>& stiffness, const std::
            const CentreVector& displacement) {
   centre.clear();
   for (std::size_t i = 0; i < stiffness.size(); ++i) {
-    const double force = forces[i] + stiffness[i] * centre.direction(i).dot(displacement);
-    centre.add(i, {.count = 1.0, .force = force, .stiffness = stiffness[i], .tangent_stiffness = stiffness[i]});
+    const double force = forces[i] + stiffness[i] * centre.mean_normal(i).dot(displacement);
+    centre.add(i, {.count = 1.0, .force = force, .stiffness = stiffness[i], .regularized_stiffness = stiffness[i]});
   }
   centre.sum_up();
 }
 
 TEST(MdrFreeCentre, DoesNotMoveWhereItIsFixed) {
   const FreeCentre centre(walls(k_cross), false);
-  EXPECT_EQ(centre.count(), 0);
+  EXPECT_EQ(centre.free_directions(), 0);
   for (std::size_t i = 0; i < k_cross.size(); ++i) EXPECT_FALSE(centre.acts(i));
 }
 
@@ -44,15 +44,15 @@ TEST(MdrFreeCentre, HasMovedTowardsAWallByItsPathAlongTheNormal) {
   const CentreVector path{0.1, -0.2, 0.0};
   const std::vector<double> state{0.1, -0.2, 7.0};  // the last entry is no direction of the centre
   for (std::size_t i = 0; i < k_cross.size(); ++i) {
-    EXPECT_DOUBLE_EQ(centre.moved_towards(i, state), k_cross[i].dot(centre.in_space(path)));
+    EXPECT_DOUBLE_EQ(centre.approach_by_centre(i, state), k_cross[i].dot(centre.in_space(path)));
   }
 }
 
 TEST(MdrFreeCentre, MovesAlongTheMeanNormalsOnly) {
-  EXPECT_EQ(FreeCentre(walls(k_cross), true).count(), 2);
+  EXPECT_EQ(FreeCentre(walls(k_cross), true).free_directions(), 2);
   // Walls of one class that face each other have no mean normal.
   const ContactClass pair{.name = "pair", .normals = {{1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}}};
-  EXPECT_EQ(FreeCentre(std::vector{pair}, true).count(), 0);
+  EXPECT_EQ(FreeCentre(std::vector{pair}, true).free_directions(), 0);
 }
 
 TEST(MdrFreeCentre, FindsTheBalanceOfSpringsInOneStep) {
@@ -79,8 +79,8 @@ TEST(MdrFreeCentre, IsNotMovedAcrossALineByForcesThatNearlyCancelOnIt) {
 TEST(MdrFreeCentre, StaysInDirectionsInWhichNothingConstrainsIt) {
   FreeCentre centre(walls(k_cross), true);
   const CentreMatrix across = centre.unconstrained([](std::size_t i) { return i < 2; });
-  EXPECT_NEAR(centre.in_space(across * centre.direction(0)).norm(), 0.0, 1e-15);
-  EXPECT_NEAR((across * centre.direction(2) - centre.direction(2)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR(centre.in_space(across * centre.mean_normal(0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((across * centre.mean_normal(2) - centre.mean_normal(2)).norm(), 0.0, 1e-15);
   const CentreMatrix none = centre.unconstrained([](std::size_t) { return true; });
   EXPECT_NEAR(none.norm(), 0.0, 1e-15);
 }
@@ -103,7 +103,7 @@ TEST(MdrFreeCentre, MovesByTheTangentsOfTouchesAlongLinesThatHaveNoStiffnessYet)
     centre.add(i, {.count = 1.0,
                    .force = i == 0 ? 1e-9 : 0.0,
                    .stiffness = bears ? 2.0 : 0.0,
-                   .tangent_stiffness = bears ? 2.0 : 1e-6});
+                   .regularized_stiffness = bears ? 2.0 : 1e-6});
   }
   centre.sum_up();
   EXPECT_NEAR(centre.in_space(centre.step()).x(), -1e-9 / 2e-6, 1e-15);

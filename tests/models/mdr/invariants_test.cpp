@@ -158,10 +158,18 @@ TEST(MdrInvariance, UnloadingAndReloadingIsAClosedLoopWhileTheRadiusRests) {
 
 // --- along one curve
 
+/// Defect of the volume balance, which the implicit form has in its first row; 0 while the radius is held.
+double balance_defect(HybridSystem& system, double xi, std::span<const double> y) {
+  const std::vector<double> dy(y.size(), 0.0);
+  std::vector<double> residual(y.size());
+  system.residual(xi, y, dy, residual);
+  return residual.front();
+}
+
 /// Largest drift of the volume balance at the ends of all internal steps of one ramp.
 double largest_drift(const CheckedScenario& scenario, std::string_view integrator, double rtol) {
   const Scene scene = make_scene(scenario);
-  auto& system = dynamic_cast<mdr::System&>(*scene.system);
+  HybridSystem& system = *scene.system;
   std::vector<double> y(system.unknowns().size());
   std::vector<Event> log;
   std::vector<Ramp> ramps;
@@ -183,7 +191,7 @@ double largest_drift(const CheckedScenario& scenario, std::string_view integrato
       xi = advance.xi;
       hit_guard = advance.hit_guard;
       integrator_used->dense_output(xi, y);
-      worst = std::max(worst, std::abs(system.balance_residual(xi, y)));
+      worst = std::max(worst, std::abs(balance_defect(system, xi, y)));
     }
     if (hit_guard) {
       const std::vector<std::size_t> fired(integrator_used->fired().begin(), integrator_used->fired().end());

@@ -86,7 +86,7 @@ TEST(MdrModeSearch, FreezesTheBalanceWithWhichTheRadiusGrows) {
   search.begin(before);
   const Found found = resolve(search);
   Particle& after = search.particle();
-  EXPECT_EQ(after.evaluated(0.0, found.y).volume.value, after.mode.frozen_balance);
+  EXPECT_EQ(after.at_state(0.0, found.y).volume.value, after.mode.frozen_balance);
   EXPECT_NE(after.mode.frozen_balance, 0.0);
 }
 

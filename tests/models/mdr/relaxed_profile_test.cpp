@@ -63,7 +63,7 @@ TEST(MdrRelaxedProfile, MeetsTheReferenceOfAConcaveConvexProfile) {
     for (std::size_t i = 0; i < radii.size(); ++i) {
       // The last radius of the reference is the profile's end up to round-off.
       const double a = std::min(radii[i], profile.largest_radius());
-      const PeelState state = peel_state(profile, 1.0, k_surface_energy, a);
+      const PeelState state = peel_state(profile, {1.0, k_surface_energy}, a);
       EXPECT_NEAR(profile.image(a), image[i], 1e-14) << "a = " << a << ", samples: " << count;
       EXPECT_NEAR(state.displacement_1d, displacement[i], 1e-14) << "a = " << a << ", samples: " << count;
       EXPECT_NEAR(state.force, force[i], 1e-14) << "a = " << a << ", samples: " << count;
@@ -85,7 +85,7 @@ TEST(MdrRelaxedProfile, PullsOffWhereTheReferenceDoes) {
   for (const std::size_t count : {5, 20, 200}) {
     const RelaxedProfile profile = bowl(count).profile();
     for (const PullOff& expected : k_pull_offs) {
-      const PeelState state = pull_off_state(profile, 1.0, k_surface_energy, expected.control);
+      const PeelState state = pull_off_state(profile, {1.0, k_surface_energy}, expected.control);
       EXPECT_LE(relative_error(state.contact_radius, expected.contact_radius), 1e-13) << "samples: " << count;
       EXPECT_LE(relative_error(state.displacement_1d, expected.displacement), 1e-13) << "samples: " << count;
       EXPECT_LE(relative_error(state.force, expected.force), 1e-13) << "samples: " << count;
@@ -98,10 +98,10 @@ TEST(MdrRelaxedProfile, PullsOffOutsideTheRing) {
   const RelaxedProfile profile = bowl(50).profile();
   const double ring = std::sqrt(3.0 / 64.0);
   EXPECT_NEAR(profile.image_slope(ring), 0.0, 1e-14);
-  EXPECT_LE(relative_error(critical_radius(profile, 1.0, 0.0, Control::displacement), ring), 1e-13);
+  EXPECT_LE(relative_error(critical_radius(profile, {1.0, 0.0}, Control::displacement), ring), 1e-13);
   double last = ring;
   for (const double surface_energy : {1e-12, 1e-8, 1e-4, 1e-2}) {
-    const double a = critical_radius(profile, 1.0, surface_energy, Control::displacement);
+    const double a = critical_radius(profile, {1.0, surface_energy}, Control::displacement);
     EXPECT_GT(a, last) << "dg = " << surface_energy;
     last = a;
   }
@@ -134,8 +134,8 @@ TEST(MdrRelaxedProfile, ConvergesToTheEllipseWithTheFourthPowerOfTheDistance) {
     const RelaxedProfile profile = sampled(height, largest_radius, count).profile();
     double worst = 0.0;
     for (const double a : {0.1, 0.25, 0.4, 0.55, 0.7, 0.8}) {
-      const PeelState ours = peel_state(profile, 1.0, 1e-3, a);
-      const PeelState exact = peel_state(ellipse, 1.0, 1e-3, a);
+      const PeelState ours = peel_state(profile, {1.0, 1e-3}, a);
+      const PeelState exact = peel_state(ellipse, {1.0, 1e-3}, a);
       worst = std::max(worst, std::abs(ours.displacement_1d - exact.displacement_1d));
       worst = std::max(worst, std::abs(ours.force - exact.force));
     }
@@ -152,7 +152,7 @@ TEST(MdrRelaxedProfile, ConvergesToTheEllipseWithTheFourthPowerOfTheDistance) {
   const RelaxedProfile profile = sampled(height, largest_radius, 641).profile();
   for (const Control control : {Control::displacement, Control::force}) {
     EXPECT_LE(
-        relative_error(critical_radius(profile, 1.0, 1e-3, control), critical_radius(ellipse, 1.0, 1e-3, control)),
+        relative_error(critical_radius(profile, {1.0, 1e-3}, control), critical_radius(ellipse, {1.0, 1e-3}, control)),
         1e-8);
   }
 }
@@ -160,10 +160,10 @@ TEST(MdrRelaxedProfile, ConvergesToTheEllipseWithTheFourthPowerOfTheDistance) {
 TEST(MdrRelaxedProfile, PeelsAlongStableStatesDownToPullOff) {
   const RelaxedProfile profile = bowl(100).profile();
   for (const Control control : {Control::displacement, Control::force}) {
-    const auto curve = peel_curve(profile, 1.0, k_surface_energy, control, 60);
+    const auto curve = peel_curve(profile, {1.0, k_surface_energy}, control, 60);
     ASSERT_EQ(curve.size(), 60u);
     EXPECT_EQ(curve.front().contact_radius, profile.largest_radius());
-    const PeelState end = pull_off_state(profile, 1.0, k_surface_energy, control);
+    const PeelState end = pull_off_state(profile, {1.0, k_surface_energy}, control);
     EXPECT_EQ(curve.back().contact_radius, end.contact_radius);
     EXPECT_EQ(curve.back().force, end.force);
     for (std::size_t i = 1; i < curve.size(); ++i) {
@@ -179,13 +179,13 @@ TEST(MdrRelaxedProfile, PeelsAlongStableStatesDownToPullOff) {
 
 TEST(MdrRelaxedProfile, NeverPullsOffWithoutAdhesionWhereItIsConvex) {
   const RelaxedProfile profile = sampled([](double r) { return r * r; }, 1.0, 10).profile();
-  EXPECT_EQ(critical_radius(profile, 1.0, 0.0, Control::force), 0.0);
-  EXPECT_EQ(pull_off_state(profile, 1.0, 0.0, Control::force).force, 0.0);
+  EXPECT_EQ(critical_radius(profile, {1.0, 0.0}, Control::force), 0.0);
+  EXPECT_EQ(pull_off_state(profile, {1.0, 0.0}, Control::force).force, 0.0);
 }
 
 TEST(MdrRelaxedProfile, PullsOffAsJkrForTheParabola) {
   const RelaxedProfile profile = sampled([](double r) { return 0.5 * r * r; }, 1.0, 10).profile();
-  const PeelState state = pull_off_state(profile, 1.0, 1e-3, Control::force);
+  const PeelState state = pull_off_state(profile, {1.0, 1e-3}, Control::force);
   EXPECT_LE(relative_error(state.force, -1.5 * pi * 1e-3), 1e-13);
 }
 
@@ -196,8 +196,8 @@ TEST(MdrRelaxedProfile, DoesNotDependOnTheUnits) {
   Samples small = bowl(30);
   for (double& r : small.radii) r *= length;
   for (double& h : small.heights) h *= length;
-  const PeelState ours = pull_off_state(small.profile(), stress, k_surface_energy * stress * length, Control::force);
-  const PeelState expected = pull_off_state(bowl(30).profile(), 1.0, k_surface_energy, Control::force);
+  const PeelState ours = pull_off_state(small.profile(), {stress, k_surface_energy * stress * length}, Control::force);
+  const PeelState expected = pull_off_state(bowl(30).profile(), {1.0, k_surface_energy}, Control::force);
   EXPECT_LE(relative_error(ours.contact_radius, expected.contact_radius * length), 4 * k_epsilon);
   EXPECT_LE(relative_error(ours.force, expected.force * stress * length * length), 64 * k_epsilon);
 }
@@ -232,16 +232,17 @@ TEST(MdrRelaxedProfile, EndsWithItsSamples) {
     EXPECT_THROW(static_cast<void>(profile.image(x)), std::domain_error) << x;
     EXPECT_THROW(static_cast<void>(profile.image_slope(x)), std::domain_error) << x;
     EXPECT_THROW(static_cast<void>(profile.image_area(x)), std::domain_error) << x;
-    EXPECT_THROW(static_cast<void>(peel_state(profile, 1.0, 0.0, x)), std::domain_error) << x;
+    EXPECT_THROW(static_cast<void>(peel_state(profile, {1.0, 0.0}, x)), std::domain_error) << x;
   }
   // The adhesion is so strong that the edge is unstable from the beginning.
   try {
-    static_cast<void>(critical_radius(profile, 1.0, 10.0, Control::displacement));
+    static_cast<void>(critical_radius(profile, {1.0, 10.0}, Control::displacement));
     ADD_FAILURE() << "no error";
   } catch (const std::domain_error& error) {
     EXPECT_NE(std::string(error.what()).find("unstable at the largest radius"), std::string::npos) << error.what();
   }
-  EXPECT_THROW(static_cast<void>(peel_curve(profile, 1.0, k_surface_energy, Control::force, 1)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(peel_curve(profile, {1.0, k_surface_energy}, Control::force, 1)),
+               std::invalid_argument);
 }
 
 }  // namespace

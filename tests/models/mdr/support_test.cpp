@@ -67,9 +67,9 @@ TEST(MdrSupport, AFixedCentreNeedsNone) {
 TEST(MdrSupport, WallsWithoutForceControlConstrainTheCentreAlongTheirNormals) {
   Particle pair = particle_between({resting(k_up, 1e-3), resting(-k_up, 1e-3), pressing(k_right, 1e-3)});
   const CentreMatrix left = unconstrained_directions(pair);
-  EXPECT_NEAR(left.trace(), pair.centre().count() - 1.0, 1e-14);
-  EXPECT_NEAR((left * pair.centre().direction(0)).norm(), 0.0, 1e-14);
-  EXPECT_NEAR((left * pair.centre().direction(2) - pair.centre().direction(2)).norm(), 0.0, 1e-14);
+  EXPECT_NEAR(left.trace(), pair.centre().free_directions() - 1.0, 1e-14);
+  EXPECT_NEAR((left * pair.centre().mean_normal(0)).norm(), 0.0, 1e-14);
+  EXPECT_NEAR((left * pair.centre().mean_normal(2) - pair.centre().mean_normal(2)).norm(), 0.0, 1e-14);
   EXPECT_NEAR((left * left - left).norm(), 0.0, 1e-14) << "a projector";
 }
 
@@ -132,7 +132,7 @@ TEST(MdrSupport, AForceTakesALooseParticleToTheWallThatBearsIt) {
   EXPECT_EQ(names_of(log), std::vector<std::string>{"contact-made"});
   EXPECT_TRUE(p.branch(1).touches());
   EXPECT_NEAR(p.contact(1).overlap, 0.0, 1e-15);
-  EXPECT_NEAR(centre_of(y, p.centre().count()).norm(), 0.25, 1e-15);
+  EXPECT_NEAR(centre_of(y, p.centre().free_directions()).norm(), 0.25, 1e-15);
 }
 
 TEST(MdrSupport, NothingIsCarriedInTheMiddleOfAStep) {

@@ -36,9 +36,9 @@ TEST(MdrWalls, MeasureDisplacementsInRadiiAndForcesInTheirUnit) {
 TEST(MdrWalls, PositionsAreExactAtBothEndsOfAStep) {
   const Walls walls = driven(setup(), {{0.1, 0.7}, {0.0, 0.0}, {0.5, 0.25}});
   for (const std::size_t i : {0U, 1U, 2U}) {
-    EXPECT_EQ(walls.position(i, 0.0), walls.drive(i).start());
-    EXPECT_EQ(walls.position(i, 1.0), walls.drive(i).end());
-    EXPECT_DOUBLE_EQ(walls.position(i, 0.3), walls.drive(i).value(0.3));
+    EXPECT_EQ(walls.displacement(i, 0.0), walls.drive(i).start());
+    EXPECT_EQ(walls.displacement(i, 1.0), walls.drive(i).end());
+    EXPECT_DOUBLE_EQ(walls.displacement(i, 0.3), walls.drive(i).value(0.3));
   }
 }
 
@@ -51,9 +51,9 @@ TEST(MdrWalls, TheFastestWallUnderDisplacementControlGivesTheSpeed) {
 TEST(MdrWalls, AForceThatIsRoundOffBesideTheOthersMayBeSlight) {
   const Walls walls =
       driven(setup(), {{0.0, 1.0, Control::force}, {0.0, 0.5 * k_no_net_force, Control::force}, {0.0, 1e-12}});
-  EXPECT_FALSE(walls.may_be_slight(0));
-  EXPECT_TRUE(walls.may_be_slight(1));
-  EXPECT_FALSE(walls.may_be_slight(2));  // a displacement
+  EXPECT_FALSE(walls.may_be_negligible(0));
+  EXPECT_TRUE(walls.may_be_negligible(1));
+  EXPECT_FALSE(walls.may_be_negligible(2));  // a displacement
 }
 
 TEST(MdrWalls, BearUntilTheirContactIsBalancedByNoOthers) {

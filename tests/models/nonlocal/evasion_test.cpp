@@ -31,7 +31,7 @@ TEST(NonlocalEvasion, WritesTheGapsOfTheWallsThatItKnows) {
   const Contacts contacts({k_rubber}, single_walls(simple()), Centre::free);
   const double along = contacts.free_directions()(2, 0);
   std::vector<double> y{0.5, 0.5, 0.0};
-  put_centre(contacts, std::vector<Obstacle>{{1, contacts.arm(1), -0.2}}, {0.1 * along, 0.0, 0.0}, y);
+  put_centre(contacts, std::vector<Obstacle>{{1, contacts.mean_normal(1), -0.2}}, {0.1 * along, 0.0, 0.0}, y);
   EXPECT_EQ(y[0], 0.5);
   EXPECT_NEAR(y[1], -0.3, 1e-16);
   EXPECT_EQ(y[2], 0.1 * along);

@@ -28,7 +28,7 @@ struct Loaded {
   [[nodiscard]] Eigen::Vector3d net_force_of(const std::vector<double>& approaches) const {
     Eigen::Vector3d net = Eigen::Vector3d::Zero();
     for (std::size_t j = 0; j < approaches.size(); ++j)
-      net += contacts.weight(j) * stiffness[j] * approaches[j] * contacts.arm(j);
+      net += contacts.weight(j) * stiffness[j] * approaches[j] * contacts.mean_normal(j);
     return net;
   }
 };
@@ -84,7 +84,7 @@ TEST(NonlocalTangent, SolvesTheEquationsOfManyClasses) {
   // The centre is free along the axis of the half turn.
   ASSERT_EQ(contacts.free_count(), 1U);
   Eigen::VectorXd arms(n);
-  for (Eigen::Index j = 0; j < n; ++j) arms[j] = contacts.arm(static_cast<std::size_t>(j)).x();
+  for (Eigen::Index j = 0; j < n; ++j) arms[j] = contacts.mean_normal(static_cast<std::size_t>(j)).x();
   const Eigen::VectorXd moved = factors.solve(arms);
   double hold = 0.0;
   for (Eigen::Index j = 0; j < n; ++j) {

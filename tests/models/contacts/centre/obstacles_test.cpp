@@ -13,8 +13,8 @@ constexpr double k_least = 1e-6;
 const auto k_overlaps = [](const Obstacle& wall, const Eigen::Vector3d& c) { return wall.overlap(c) > 1e-15; };
 
 bool is_cleared(const std::vector<Obstacle>& walls, Eigen::Vector3d& c,
-                const Eigen::Matrix3d& along = Eigen::Matrix3d::Identity()) {
-  return clear(walls, along, k_least, k_overlaps, c);
+                const Eigen::Matrix3d& projector = Eigen::Matrix3d::Identity()) {
+  return project_out_of(walls, projector, k_least, k_overlaps, c);
 }
 
 TEST(ObstaclesOfACentre, LeaveAClearCentreWhereItIs) {

@@ -1,4 +1,4 @@
-#include "mdr/resolution.hpp"
+#include "mdr/idle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ bool is_idle(const Particle& p, std::size_t i) {
   const ContactBranch& branch = p.branch(i);
   const bool may_be_idle = branch.regime == Regime::elastic ? branch.is_on_primary_branch || !p.law().adheres()
                                                             : branch.regime == Regime::unloading && !p.law().adheres();
-  return may_be_idle && is_below_resolution(p, p.contact(i).overlap - branch.touching_overlap(p.law(), p.at().r));
+  return may_be_idle && is_below_resolution(p, p.contact(i).overlap - branch.touching_overlap(p.law(), p.at().growth));
 }
 
 }  // namespace monograin::mdr

@@ -1,4 +1,4 @@
-/// Resolution of the balance of a free centre: forces and overlaps below it are round-off.
+/// Idle contacts: below the resolution of the balance of a free centre, forces and overlaps are round-off.
 #pragma once
 
 #include "mdr/particle.hpp"

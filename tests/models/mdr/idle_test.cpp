@@ -1,4 +1,4 @@
-#include "mdr/resolution.hpp"
+#include "mdr/idle.hpp"
 
 #include <gtest/gtest.h>
 
