@@ -126,8 +126,8 @@ Elementwise semimech(const std::string& quantity, const std::string& configurati
   const plastic::Configuration walls = plastic::configuration_named(configuration);
   return Elementwise(
       [=, last = LastMade<semimech::Law, 3>()](double e, double nu, double y, double r, double d) mutable {
-        const semimech::Law& law = last.get(
-            {e, nu, y}, [&] { return semimech::make_law(semimech::make_material(e, nu, y), walls); });
+        const semimech::Law& law =
+            last.get({e, nu, y}, [&] { return semimech::make_law(semimech::make_material(e, nu, y), walls); });
         return plastic_quantity(law, quantity, y, r, d);
       },
       youngs_modulus, poisson_ratio, yield_stress, radius, displacement);
@@ -138,8 +138,7 @@ Elementwise hardening(const std::string& quantity, const std::string& configurat
   const plastic::Configuration walls = plastic::configuration_named(configuration);
   return Elementwise(
       [=, last = LastMade<hardening::Law, 1>()](double kappa, double mu, double r, double d) mutable {
-        return plastic_quantity(last.get({mu}, [&] { return hardening::make_law(mu, walls); }), quantity, kappa, r,
-                                d);
+        return plastic_quantity(last.get({mu}, [&] { return hardening::make_law(mu, walls); }), quantity, kappa, r, d);
       },
       strength, exponent, radius, displacement);
 }
@@ -372,8 +371,9 @@ py::tuple mdr_peel_curve(const Numbers& radii, const Numbers& heights, double co
   require_positive({{"modulus", composite_modulus}, {"surface_energy", surface_energy}});
   const Control controlled = control_named(control);
   const mdr::RelaxedProfile profile(list_of(radii), list_of(heights));
-  const std::vector<mdr::PeelState> states = run_interruptibly(
-      [&](const auto&) { return mdr::peel_curve(profile, {composite_modulus, surface_energy}, controlled, count); });
+  const std::vector<mdr::PeelState> states = run_interruptibly([&](const auto&) {
+    return mdr::peel_curve(profile, {composite_modulus, surface_energy}, controlled, count);
+  });
   const auto column = [&](double mdr::PeelState::*value) {
     Array array(static_cast<py::ssize_t>(states.size()));
     std::ranges::transform(states, array.mutable_data(), value);
