@@ -154,7 +154,8 @@ double yield_overlap_ratio(double modulus_over_yield, const PressureCurve& press
 
 double phi(double theta) noexcept {
   if (theta >= k_large_angle) return theta - std::sin(theta) * std::cos(theta);
-  // (t - sin t)/2 with t = 2 theta as a nested Taylor series; the last term kept is below 1e-17 of the sum at t = 1.
+  // (t - sin t)/2 with t = 2 theta as a nested Taylor series, whose denominators are n (n + 1) for n = 4, 6, ..., 18;
+  // the last term kept is below 1e-17 of the sum at t = 1.
   const double t = 2.0 * theta;
   const double s = t * t;
   double sum = 1.0;
@@ -330,7 +331,9 @@ double plastic_overlap(const Material& material, double radius, double force, do
   // shorter than the step before.
   constexpr double k_shortest_overlap_step = 1e-16;
   constexpr double k_noisy_overlap_step = 1e-13;
-  // At `low` the contact has no area; the force rises from there to its largest value not far below the radius.
+  // At `low` the contact has no area; the force rises from there to its largest value not far below the radius, and
+  // then falls. So the ends of the bracket need not differ in sign, as bracketing root finders ask: here Newton's
+  // method gives way to bisection where the force falls.
   double low = radius - std::sqrt(radius * radius + area_constant);
   double high = radius;
   double overlap = std::clamp(guess, low + k_inside * (radius - low), (1.0 - k_inside) * radius);
@@ -360,7 +363,7 @@ double plastic_overlap(const Material& material, double radius, double force, do
 double recompressed_share(const UnloadingShape& shape, double force) {
   const double a = shape.contact_radius_max;
   const double value = force / (2.0 * shape.pressure * a * a);
-  if (value > 2.5) throw std::domain_error("overlap beyond the end of the unloading branch");
+  if (value > k_largest_phi) throw std::domain_error("overlap beyond the end of the unloading branch");
   const double sine = value > 0.0 ? std::sin(0.5 * inverse_phi(value)) : 0.0;
   return 2.0 * sine * sine;
 }

@@ -43,12 +43,18 @@ struct Material {
 /// @return d in (0, 1], or infinity where there is no root up to 1 and the end of the curve
 [[nodiscard]] double yield_overlap_ratio(double modulus_over_yield, const PressureCurve& pressure_curve);
 
+// With the ellipse, the force of a contact goes with phi and its energy with psi; a = b sin(theta).
+
 /// phi(theta) = theta - sin(theta) cos(theta), for theta in [0, pi/2], to full relative accuracy.
 [[nodiscard]] double phi(double theta) noexcept;
 /// phi(theta) for known sine and cosine of theta.
 [[nodiscard]] double phi_at(double theta, double sine, double cosine) noexcept;
 
-/// The angle with phi(theta) = value, for value in [0, 2.5], to full relative accuracy.
+/// Largest argument of inverse_phi(): phi(2 pi/3), rounded down. At that angle an unloading contact is half a recovery
+/// above its largest overlap.
+inline constexpr double k_largest_phi = 2.5;
+/// The angle with phi(theta) = value, for value in [0, k_largest_phi], to full relative accuracy: Kepler's equation
+/// t - sin(t) = 2 value of eccentricity 1, with t = 2 theta.
 [[nodiscard]] double inverse_phi(double value) noexcept;
 
 /// psi(theta) = sin(theta) - theta cos(theta) - sin(theta)^3/3, for theta in [0, pi/2], to full relative accuracy.

@@ -26,7 +26,7 @@ Contact elastic_branch(const ContactLaw& law, double radius, double overlap) {
 
 /// Contact below its largest overlap. If the law continues off its branches, the force is odd about the overlap at
 /// which the contact opens, and more than two recoveries above that (one, below) it rises with the slope at the largest
-/// overlap: the branch is short, and trials may lead far off it.
+/// overlap, 2 E* a_max/(1 - rho): the branch is short, and trials may lead far off it.
 Contact unloading_branch(const ContactLaw& law, const UnloadingShape& shape, double overlap) {
   const double modulus = law.material.composite_modulus;
   if (!law.continues_off_branch) return unloading_contact(shape, modulus, overlap);
@@ -210,7 +210,7 @@ double ContactBranch::opening_guard(const ContactLaw& law, double growth, double
 
 ContactBranch ContactBranch::with_largest(const ContactLaw& law, double growth, double overlap) const noexcept {
   ContactBranch next = *this;
-  next.largest = overlap - (law.is_shifted() ? growth : 0.0);
+  next.largest_measure = overlap - (law.is_shifted() ? growth : 0.0);
   return next;
 }
 

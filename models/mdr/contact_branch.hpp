@@ -50,20 +50,21 @@ enum class PlasticPart { recoverable, work_done };
 struct ContactBranch {
   Regime regime = Regime::open;
   bool is_on_primary_branch = true;  ///< the contact is at its largest overlap, and the overlap is not decreasing
-  double largest = 0.0;  ///< largest overlap (running maximum) or wall displacement (shifted), off the primary branch
-  double area_constant = 0.0;  ///< c of yield_area_constant(), set once at yield
+  double largest_measure = 0.0;      ///< off the primary branch: largest overlap (shifted: without the growth)
+  double area_constant = 0.0;        ///< c of yield_area_constant(), set once at yield
   AdhesiveEdge edge;
   double resting = 0.0;  ///< approach at which an open wall without load was left
 
   [[nodiscard]] bool touches() const noexcept { return mdr::touches(regime); }
   [[nodiscard]] double largest_overlap(const ContactLaw& law, double growth) const noexcept {
-    return law.is_shifted() ? largest + growth : largest;
+    return law.is_shifted() ? largest_measure + growth : largest_measure;
   }
   /// Overlap at which the contact opens, or at which its open wall begins to touch.
   [[nodiscard]] double touching_overlap(const ContactLaw& law, double growth) const;
 
-  /// Elastic indenter that the contact leaves when it unloads. The overlap counts only for a fully plastic contact, as
-  /// its largest one. Cached for one radius and largest overlap: it is most of the cost of an unloading force.
+  /// Elastic indenter that the contact leaves when it unloads. Cached for one radius and largest overlap: it is most of
+  /// the cost of an unloading force.
+  /// @param overlap  counts only for a fully plastic contact, as its largest one
   [[nodiscard]] const UnloadingShape& shape(const ContactLaw& law, double growth, double overlap) const;
   /// Image of an elastic contact, or of one below its largest overlap.
   [[nodiscard]] Image image(const ContactLaw& law, double growth, double overlap) const;

@@ -14,13 +14,34 @@ namespace {
 
 constexpr int k_most_steps = 60;
 // Step of the growing radius after which Newton's next one is round-off, if the equations are smooth.
-constexpr double k_last_step = 1e-10;
+constexpr double k_smooth_last_step = 1e-10;
 // A step below this that is not much shorter than the last one is round-off: the search has converged.
-constexpr double k_least_step = 1e-12;
+constexpr double k_round_off_step = 1e-12;
+// Longest step of the growing radius (over R0).
+constexpr double k_longest_step = 0.1;
 
 bool peels_anywhere(const Particle& p) noexcept {
   return std::ranges::any_of(p.branches(), [](const ContactBranch& branch) { return branch.edge.peels(); });
 }
+
+/// Bounds of the growth while Newton's method solves for it. The balance rises with the radius, but has a kink where a
+/// wall under force pulls off: Newton's method may step across it and back without end. The radii seen on either side
+/// bound the next one, and bisection breaks the cycle.
+struct GrowthBracket {
+  double below = -k_infinity;
+  double above = k_infinity;
+
+  /// Takes note of the defect of the balance at a growth.
+  /// @return the step from there, or one to the middle of the bracket if that step leads out of it
+  double step_within(double growth, double step, double defect, double last_step) {
+    (defect < 0.0 ? below : above) = growth;
+    const double next = growth + step;
+    const bool is_bounded = std::isfinite(above - below);
+    const bool leads_out = is_bounded && (next <= below || next >= above);
+    return leads_out && std::abs(step) >= std::max(last_step, k_round_off_step) ? std::midpoint(below, above) - growth
+                                                                                : step;
+  }
+};
 
 }  // namespace
 
@@ -65,12 +86,11 @@ void complete(Particle& p, double xi, std::span<double> y) {
 
 void grow(Particle& p, double xi, std::span<double> y) {
   const int count = p.centre().free_directions();
-  double below = -k_infinity;
-  double above = k_infinity;
+  GrowthBracket bracket;
   double step_size = k_infinity;
   // Quadratic convergence makes the next step round-off below this. Convergence is slower where forces go with a square
   // root: for an idle contact of a free centre, or an edge next to pull-off.
-  const double last_step = !p.centre().is_free() && !peels_anywhere(p) ? k_last_step : 2.0 * k_epsilon;
+  const double last_step = !p.centre().is_free() && !peels_anywhere(p) ? k_smooth_last_step : 2.0 * k_epsilon;
   for (int iteration = 0; iteration < k_most_steps; ++iteration) {
     move_walls(p, xi, y);
     p.evaluate(xi, y);
@@ -85,25 +105,16 @@ void grow(Particle& p, double xi, std::span<double> y) {
       defect += p.at().volume_by_centre.dot(to_balance);
     }
     if (!(slope > 0.0)) throw DomainError(Limit::free_surface_used_up);
-    double step = std::clamp(-defect / slope, -0.1, 0.1);
-    // The balance rises with the radius, but has a kink where a wall under force pulls off: Newton's method may step
-    // across it and back without end. The radii seen on either side bound the next one, and bisection breaks the cycle.
-    if (!p.centre().is_free()) {
-      (defect < 0.0 ? below : above) = y[k_growth];
-      const double next = y[k_growth] + step;
-      const bool is_bounded = std::isfinite(above - below);
-      if (std::abs(step) >= std::max(last_step, k_least_step) && is_bounded && (next <= below || next >= above)) {
-        step = std::midpoint(below, above) - y[k_growth];
-      }
-    }
+    double step = std::clamp(-defect / slope, -k_longest_step, k_longest_step);
+    if (!p.centre().is_free()) step = bracket.step_within(y[k_growth], step, defect, last_step);
     y[k_growth] += step;
     const CentreVector centre_step = to_balance + step * by_radius;
     if (count > 0) set_centre(y, count, centre_of(y, count) + centre_step);
     const double size = std::max(std::abs(step), centre_step.norm());
     if (size < last_step) return;
     // A centre that soft contacts hold moves by more than round-off even where forces balance.
-    const bool is_balanced = std::abs(step) < k_least_step && p.centre().force().norm() <= p.force_round_off();
-    if (size >= 0.5 * step_size && (size < k_least_step || is_balanced)) return;
+    const bool is_balanced = std::abs(step) < k_round_off_step && p.centre().force().norm() <= p.force_round_off();
+    if (size >= 0.5 * step_size && (size < k_round_off_step || is_balanced)) return;
     step_size = size;
   }
   throw DomainError(Limit::free_surface_used_up);

@@ -102,9 +102,9 @@ class ModeSearch {
   Snap snap_;
   std::vector<Event> made_;             ///< contacts made in the search, which are logged at its end
   std::optional<bool> decided_growth_;  ///< what a growth guard has just decided; none: the sign of the demand decides
-  /// A force-controlled contact has just yielded: its force has jumped, and its wall has not given way yet. The search
-  /// leaves centre and walls as they are, and freezes the volume balance in this state; when the wall gives way the
-  /// radius follows, and may fall a little.
+  /// A force-controlled contact has just yielded: its force has jumped, and its wall has not moved yet. The search
+  /// leaves centre and walls as they are, and freezes the volume balance in this state; when the wall moves the radius
+  /// follows, and may fall a little.
   bool has_yielded_under_force_ = false;
   bool radius_diverges_ = false;  ///< the radius would run away in a mode tried in this search
   std::optional<Diagnostic> validity_;

@@ -16,8 +16,9 @@ using std::numbers::pi;
 // Words in the order of Regime, then those of an adhesive contact whose edge sticks or peels.
 constexpr std::array<std::string_view, 7> k_regime_words{"open",      "elastic",  "fully-plastic", "unloading",
                                                          "separated", "adhering", "peeling"};
-constexpr double k_adhering_word = 5.0;
-constexpr double k_peeling_word = 6.0;
+constexpr double k_adhering_word = static_cast<double>(Regime::separated) + 1.0;
+constexpr double k_peeling_word = k_adhering_word + 1.0;
+static_assert(k_peeling_word + 1.0 == k_regime_words.size());
 
 double regime_word(const ContactBranch& branch) noexcept {
   if (branch.edge.sticks()) return k_adhering_word;

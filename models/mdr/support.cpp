@@ -308,6 +308,8 @@ bool lose_idle_contacts(Particle& p, double xi, std::span<const double> y, std::
   std::vector<IdleWall> unopposed = walls;
   std::erase_if(unopposed, [&](const IdleWall& wall) { return is_supported(p, wall.contact); });
   std::optional<CentreVector> velocity;
+  // Under a force that presses the centre against idle contacts, one energy minimum decides which of them it leaves;
+  // the velocities below hold only for contacts that stay idle.
   if (idle_contacts_have_to_bear(p, xi)) {
     if (lose_unpressed(p, walls, xi, is_left, log)) return true;
   } else {

@@ -67,7 +67,7 @@ TEST(MdrModeSearch, UnloadsWhereAWallRetreatsFromTheLargestOverlap) {
   ModeSearch search(before);
   search.begin(before);
   EXPECT_EQ(resolve(search).events(), Names{"load-reversal"});
-  EXPECT_DOUBLE_EQ(search.particle().branch(0).largest, 1e-3);
+  EXPECT_DOUBLE_EQ(search.particle().branch(0).largest_measure, 1e-3);
 }
 
 TEST(MdrModeSearch, YieldsAndGrowsWhereAContactIsDrivenInBeyondItsElasticLimit) {
