@@ -182,9 +182,8 @@ constexpr std::size_t k_least_hold = 5;  // rows
 constexpr double k_near_extreme = 8.0;   // reach of a hold's rows from the extreme one, over the noise
 constexpr int k_hold_rounds = 20;        // of the search for the ends of a hold
 constexpr double k_better_hold = 20.0;   // least F of the fit with a hold against that by two lines
-constexpr double k_below_extreme =
-    2.0;                         // distance of a hold from the extreme x beyond that of its rows, over the noise
-constexpr double k_level = 2.5;  // largest slope of a hold, over its standard error
+constexpr double k_below_extreme = 2.0;  // distance of a hold from the extreme x beyond its rows' own, over the noise
+constexpr double k_level = 2.5;          // largest slope of a hold, over its standard error
 
 // Turns without noise.
 constexpr double k_equal_steps = 0.05;  // largest difference of equal steps of x, over the step
