@@ -1,7 +1,7 @@
 // Adds your own law to monograin: a linear spring at every wall. model_of() makes it a model like the built-in ones,
 // with keys, direct solution, integrators, events and energies.
 #include <monograin/laws/contacts/model_of.hpp>
-#include <monograin/laws/stress/draw.hpp>
+#include <monograin/laws/stress_test/draw.hpp>
 #include <monograin/monograin.hpp>
 
 #include <array>

@@ -6,8 +6,8 @@
 
 #include "cel/system.hpp"
 #include "elastic/hertz.hpp"
-#include "stress/checks.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/checks.hpp"
+#include "stress_test/draw.hpp"
 #include "system/model.hpp"
 #include "system/resolution.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cel/motion.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/regimes.hpp"
 
 namespace monograin::cel {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "system/hybrid_system.hpp"
+#include "system/equations.hpp"
 
 namespace monograin::cel {
 namespace {

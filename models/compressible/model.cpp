@@ -7,7 +7,7 @@
 #include "compressible/regressions.hpp"
 #include "compressible/system.hpp"
 #include "material-point/presets.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/draw.hpp"
 #include "system/curve_procedure.hpp"
 #include "system/model.hpp"
 

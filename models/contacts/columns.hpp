@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "system/hybrid_system.hpp"
+#include "system/observables.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::contacts {

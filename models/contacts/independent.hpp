@@ -48,6 +48,7 @@
 #include "contacts/guards.hpp"
 #include "contacts/scales.hpp"
 #include "contacts/visible.hpp"
+#include "system/hybrid_system.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::contacts {

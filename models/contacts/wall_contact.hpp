@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "contacts/wall_drive.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/regimes.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::contacts {

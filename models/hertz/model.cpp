@@ -5,8 +5,8 @@
 #include "contacts/model_of.hpp"
 #include "elastic/hertz.hpp"
 #include "hertz/law.hpp"
-#include "stress/checks.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/checks.hpp"
+#include "stress_test/draw.hpp"
 #include "system/model.hpp"
 #include "system/resolution.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "material-point/plastic_flow.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/regimes.hpp"
 
 namespace monograin::material_point {
 

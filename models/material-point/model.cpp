@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "material-point/presets.hpp"
-#include "material-point/stress.hpp"
+#include "material-point/stress_test.hpp"
 #include "material-point/system.hpp"
 #include "material-point/yield_surface.hpp"
 #include "system/number_text.hpp"

@@ -26,8 +26,6 @@ constexpr double k_nearest_saddle = 1e-13;
 constexpr double k_farthest_saddle = 1e-2;
 constexpr double k_longer = 1.25;
 constexpr int k_most_sections = 40;
-// A step below this (over R0) that is not much shorter than the last one is round-off: the search has converged.
-constexpr double k_round_off_step = 1e-12;
 // Softenings at a fold are equal if they differ by less than this share of their sum. The place of the centre there is
 // accurate to the root of the integration error.
 constexpr double k_alike = 1e-2;
@@ -141,7 +139,8 @@ class BalanceSearch {
       throw DomainError(Limit::centre_not_held);
     }
     if (!(length >= 0.5 * step_size_)) return false;
-    if (length < k_round_off_step) return true;
+    // A step that is not much shorter than the last one, and below the resolution, is round-off.
+    if (length < k_resolution) return true;
     // Soft contacts reached from afar may need one more step of that length, back to where they are idle.
     return error_ <= noise_ && std::exchange(has_gone_back_, true);
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mdr/particle.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/regimes.hpp"
 
 namespace monograin::mdr {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mdr/adhesion.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/observables.hpp"
 
 namespace monograin::mdr {
 

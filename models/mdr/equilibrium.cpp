@@ -15,8 +15,6 @@ namespace {
 constexpr int k_most_steps = 60;
 // Step of the growing radius after which Newton's next one is round-off, if the equations are smooth.
 constexpr double k_smooth_last_step = 1e-10;
-// A step below this that is not much shorter than the last one is round-off: the search has converged.
-constexpr double k_round_off_step = 1e-12;
 // Longest step of the growing radius (over R0).
 constexpr double k_longest_step = 0.1;
 
@@ -38,8 +36,8 @@ struct GrowthBracket {
     const double next = growth + step;
     const bool is_bounded = std::isfinite(above - below);
     const bool leads_out = is_bounded && (next <= below || next >= above);
-    return leads_out && std::abs(step) >= std::max(last_step, k_round_off_step) ? std::midpoint(below, above) - growth
-                                                                                : step;
+    return leads_out && std::abs(step) >= std::max(last_step, k_resolution) ? std::midpoint(below, above) - growth
+                                                                            : step;
   }
 };
 
@@ -112,9 +110,10 @@ void grow(Particle& p, double xi, std::span<double> y) {
     if (count > 0) set_centre(y, count, centre_of(y, count) + centre_step);
     const double size = std::max(std::abs(step), centre_step.norm());
     if (size < last_step) return;
-    // A centre that soft contacts hold moves by more than round-off even where forces balance.
-    const bool is_balanced = std::abs(step) < k_round_off_step && p.centre().force().norm() <= p.force_round_off();
-    if (size >= 0.5 * step_size && (size < k_round_off_step || is_balanced)) return;
+    // A step that is not much shorter than the last one, and below the resolution, is round-off. A centre that soft
+    // contacts hold moves by more than that even where forces balance.
+    const bool is_balanced = std::abs(step) < k_resolution && p.centre().force().norm() <= p.force_round_off();
+    if (size >= 0.5 * step_size && (size < k_resolution || is_balanced)) return;
     step_size = size;
   }
   throw DomainError(Limit::free_surface_used_up);

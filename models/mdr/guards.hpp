@@ -7,7 +7,7 @@
 
 #include "mdr/contact_caps.hpp"
 #include "mdr/particle.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/regimes.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {

@@ -11,7 +11,8 @@
 
 #include "mdr/contact_caps.hpp"
 #include "mdr/particle.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/observables.hpp"
+#include "system/regimes.hpp"
 
 namespace monograin::mdr {
 

@@ -6,8 +6,8 @@
 #include "elastic/hertz.hpp"
 #include "mdr/adhesion_map.hpp"
 #include "mdr/system.hpp"
-#include "stress/checks.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/checks.hpp"
+#include "stress_test/draw.hpp"
 #include "system/model.hpp"
 #include "system/resolution.hpp"
 

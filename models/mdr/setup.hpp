@@ -15,7 +15,7 @@
 #include "mdr/apparent_radius.hpp"
 #include "mdr/contact_branch.hpp"
 #include "mdr/free_centre.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/equations.hpp"
 #include "system/resolution.hpp"
 #include "system/walls.hpp"
 

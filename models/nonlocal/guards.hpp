@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "nonlocal/particle.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/regimes.hpp"
 
 namespace monograin::nonlocal {
 

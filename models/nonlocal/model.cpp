@@ -8,8 +8,8 @@
 #include "elastic/hertz.hpp"
 #include "nonlocal/limit.hpp"
 #include "nonlocal/system.hpp"
-#include "stress/checks.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/checks.hpp"
+#include "stress_test/draw.hpp"
 #include "system/model.hpp"
 #include "system/resolution.hpp"
 

@@ -7,7 +7,7 @@
 #include "contacts/centre/obstacles.hpp"
 #include "contacts/side_ahead.hpp"
 #include "nonlocal/evasion.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/equations.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::nonlocal {

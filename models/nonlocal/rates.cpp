@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "nonlocal/evasion.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/equations.hpp"
 #include "system/limit.hpp"
 
 namespace monograin::nonlocal {

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "nonlocal/contacts.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/equations.hpp"
+#include "system/observables.hpp"
 
 namespace monograin::nonlocal {
 

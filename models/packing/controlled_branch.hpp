@@ -2,7 +2,7 @@
 #pragma once
 
 #include "packing/law.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/regimes.hpp"
 
 namespace monograin::packing {
 

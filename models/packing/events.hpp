@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "packing/mode.hpp"
-#include "system/hybrid_system.hpp"
+#include "system/regimes.hpp"
 
 namespace monograin::packing {
 

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "packing/stress.hpp"
+#include "packing/stress_test.hpp"
 #include "packing/system.hpp"
-#include "stress/checks.hpp"
+#include "stress_test/checks.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::packing {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "plastic/model_of.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/draw.hpp"
 #include "system/model.hpp"
 
 namespace monograin::plastic {

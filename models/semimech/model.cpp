@@ -4,7 +4,7 @@
 
 #include "plastic/model_of.hpp"
 #include "semimech/wall_law.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/draw.hpp"
 
 namespace monograin::semimech {
 namespace {

@@ -13,6 +13,7 @@
 #include "contacts/centre/free_centre.hpp"
 #include "contacts/centre/obstacles.hpp"
 #include "contacts/guards.hpp"
+#include "system/equations.hpp"
 
 namespace monograin::contacts {
 

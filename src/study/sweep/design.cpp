@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "numerics/parallel.hpp"
-#include "stress/dice.hpp"
+#include "stress_test/dice.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "stress/dice.hpp"
+#include "stress_test/dice.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::random_scenes_test {

@@ -6,7 +6,7 @@
 
 #include "history/run.hpp"
 #include "scenario/scenario.hpp"
-#include "stress/checks.hpp"
+#include "stress_test/checks.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {

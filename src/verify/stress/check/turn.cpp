@@ -17,7 +17,7 @@
 
 #include "catalogue.hpp"
 #include "scene/scene.hpp"
-#include "stress/dice.hpp"
+#include "stress_test/dice.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {

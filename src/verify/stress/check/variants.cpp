@@ -14,7 +14,7 @@
 #include "scenario/integrators.hpp"
 #include "scenario/model_input.hpp"
 #include "scene/scene.hpp"
-#include "stress/dice.hpp"
+#include "stress_test/dice.hpp"
 #include "verify/stress/check/rules.hpp"
 
 namespace monograin {

@@ -16,7 +16,7 @@
 #include "history/run.hpp"
 #include "scenario/integrators.hpp"
 #include "scene/scene.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/draw.hpp"
 #include "system/resolution.hpp"
 #include "verify/stress/draw/programs.hpp"
 #include "verify/stress/draw/walls.hpp"

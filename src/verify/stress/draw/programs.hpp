@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "stress/dice.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/dice.hpp"
+#include "stress_test/draw.hpp"
 #include "verify/stress/draw/scene.hpp"
 
 namespace monograin {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "scenario/text_file.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/draw.hpp"
 
 namespace monograin {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "stress/dice.hpp"
+#include "stress_test/dice.hpp"
 
 namespace monograin {
 

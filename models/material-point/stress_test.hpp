@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "stress/checks.hpp"
-#include "stress/draw.hpp"
+#include "stress_test/checks.hpp"
+#include "stress_test/draw.hpp"
 
 namespace monograin::material_point {
 

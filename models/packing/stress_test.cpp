@@ -1,4 +1,4 @@
-#include "packing/stress.hpp"
+#include "packing/stress_test.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stress/dice.hpp"
+#include "stress_test/dice.hpp"
 #include "system/model.hpp"
 
 namespace monograin {

@@ -1,4 +1,4 @@
-#include "stress/draw.hpp"
+#include "stress_test/draw.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "material-point/stress.hpp"
+#include "material-point/stress_test.hpp"
 
 #include <algorithm>
 #include <cmath>
