@@ -69,7 +69,7 @@ void mdr_die(benchmark::State& state) {
   }
   std::vector<double> y(particle.setup().unknown_count(), 0.0);
   time_law(state, "", 0.02, 0.06, [&](double growth) {
-    y[mdr::k_radius] = growth;
+    y[mdr::k_growth] = growth;
     particle.evaluate(0.5, y);
     return particle.growing_motion();
   });
