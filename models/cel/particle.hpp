@@ -49,7 +49,7 @@ struct Layout {
   }
 };
 
-/// What a class of walls does in a mode.
+/// Program of a class of walls, and the part that its contacts play in a mode.
 struct ClassMode {
   contacts::WallDrive drive{};
   bool is_released = false;  ///< the wall bears no force: it rests until the surface meets it, then moves along

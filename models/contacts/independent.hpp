@@ -134,14 +134,14 @@ class IndependentContacts final : public HybridSystem {
     if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (classes_[i].takes_force && !contacts_[i].is_integrated(law_))
-        y[slots_[i]] = contacts_[i].coordinate_from(law_, xi, y[slots_[i]]);
+        y[slots_[i]] = contacts_[i].coordinate_next_to(law_, xi, y[slots_[i]]);
     }
   }
   void solve(double xi, std::span<double> y) override {
     if (unknowns_.size() == 1) return;  // the work is the only unknown
     if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate_from(law_, xi, y[slots_[i]]);
+      if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate_next_to(law_, xi, y[slots_[i]]);
     }
   }
 

@@ -114,7 +114,7 @@ class WallContact {
   }
   /// Coordinate at an instant of the step.
   /// @param u  a coordinate nearby, with which a law that iterates begins
-  [[nodiscard]] double coordinate_from(const Law& law, double xi, double u) const {
+  [[nodiscard]] double coordinate_next_to(const Law& law, double xi, double u) const {
     return coordinate(law, xi, coordinate_power(law) > 0.0 ? displacement_of(law, u) : 0.0);
   }
 
@@ -139,7 +139,7 @@ class WallContact {
   /// Residual of the coordinate, in units of the coordinate, as integrators weigh it.
   [[nodiscard]] double residual(const Law& law, double xi, double u, const Slope& now) const {
     return is_integrated(law) ? (now.prescribed - drive_.value(xi)) / now.by_coordinate
-                              : u - coordinate_from(law, xi, u);
+                              : u - coordinate_next_to(law, xi, u);
   }
   /// Rate of the work of one wall: F dd, which is F dF/(dF/dd) where the force is prescribed.
   [[nodiscard]] double power(const Law& law, double xi, const Slope& now) const {
@@ -307,7 +307,8 @@ class WallContact {
     return PassedAtEnd::opening;
   }();
 
-  static constexpr double k_most_round_off = 4.0 * k_round_off;  ///< of values of a ramp
+  /// Relative round-off of the values of a ramp.
+  static constexpr double k_most_round_off = 4.0 * k_round_off;
 
   /// Magnitude whose round-off a ramp has that begins where another control has led: a force that holds a wall has the
   /// round-off of the wall's displacement, a displacement reached under a force that of the force.
@@ -326,8 +327,8 @@ class WallContact {
   }
   /// Slope for the coordinate u = d^n. Odd in u, so that a trial step below zero stays smooth.
   [[nodiscard]] Slope slope_of_power(const Law& law, double n, double u) const {
-    constexpr double k_nearest =
-        1e-100;  // the force is linear in u up to this displacement, where powers of it underflow
+    // Up to this displacement, where powers of it underflow, the force is linear in u.
+    constexpr double k_nearest = 1e-100;
     const double d = std::pow(std::abs(u), 1.0 / n);
     const double by_displacement_of_u = n * std::pow(d, n - 1.0);
     if (d <= k_nearest) {

@@ -81,7 +81,7 @@ void add_parameters(const PressureFall& fall, Configuration configuration, std::
 /// True for the columns of lateral contacts: where the source has no law for these, they are nan.
 [[nodiscard]] bool may_be_undefined(const CheckedRun& run, std::size_t row, std::string_view column);
 
-/// What the contacts of a scenario take from its material and its program.
+/// Reads the properties of contacts from the material and the program of a scenario.
 /// @param strength  key of the material's strength S
 /// @throws std::invalid_argument if the scenario unloads and has no elastic constants
 [[nodiscard]] Settings settings_of(const ModelInput& input, const char* strength, const Reach& reach);

@@ -34,7 +34,7 @@
 
 namespace monograin::plastic {
 
-/// What contacts need besides their law.
+/// Properties of a contact that its law does not hold.
 struct Settings {
   double strength = 0.0;  ///< S [Pa], > 0
   bool can_unload = false;
