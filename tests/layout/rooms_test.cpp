@@ -32,7 +32,8 @@ const std::vector<std::vector<std::string>> k_rooms{{"numerics"},
                                                     {"cli"}};
 
 /// Headers of models that rooms may include: they say what a model is, and list all.
-const std::set<std::string> k_of_all_models{"catalogue.hpp", "contacts/centre/reaction_cone.hpp", "stress_test", "system"};
+const std::set<std::string> k_of_all_models{"catalogue.hpp", "contacts/centre/reaction_cone.hpp", "stress_test",
+                                            "system"};
 
 /// Group of the room that a file is in, and its name; the number of groups where it is in none.
 std::pair<std::size_t, std::string> room_of(const std::string& path) {
