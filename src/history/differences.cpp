@@ -20,7 +20,9 @@ struct PowerTruncation {
 };
 
 /// Truncation of a curve that is a power n of the distance from an event, if the bend shows one near n = 1/2 or 3/2.
+/// @param slope     f', the central difference
 /// @param bend      f'' h
+/// @param step      h, of the central difference
 /// @param distance  x, of the key's value from the one at which the event comes to the row
 PowerTruncation truncation_of_power(double slope, double bend, double step, double distance) {
   constexpr double k_least = 0.3;  // |n - 1| of such a curve; that of a smooth one is smaller
@@ -33,34 +35,6 @@ PowerTruncation truncation_of_power(double slope, double bend, double step, doub
   const double truncation = step / distance * bend * (order - 1.0) / 6.0;
   return {truncation, std::abs(truncation) * std::max(k_least_error, std::abs(std::abs(order) - 0.5))};
 }
-
-/// Rows of a column, compared with those for a smaller and a larger value of a number. At a kink, the derivatives on
-/// the two sides of the number differ in many rows; next to a singularity, they do in few.
-class SidesOfColumn {
- public:
-  /// @param derivative  mean of the two sides in a row
-  /// @param difference  magnitude of their difference, without round-off
-  void add(double derivative, double difference) {
-    if (std::isnan(difference)) return;
-    largest_derivative_ = std::fmax(largest_derivative_, std::abs(derivative));
-    differences_.push_back(difference);
-  }
-
-  /// Largest difference over the largest derivative. 0 if a difference of 1 % has fewer than one row in ten.
-  [[nodiscard]] double difference() const {
-    constexpr double k_sharp = 1e-2;
-    constexpr std::ptrdiff_t k_rows = 10;
-    const auto rows = static_cast<std::ptrdiff_t>(differences_.size());
-    const double least = k_sharp * largest_derivative_;
-    const auto sharp = std::ranges::count_if(differences_, [least](double of_row) { return of_row > least; });
-    if (sharp == 0 || sharp * k_rows < rows) return 0.0;
-    return *std::ranges::max_element(differences_) / largest_derivative_;
-  }
-
- private:
-  double largest_derivative_ = 0.0;
-  std::vector<double> differences_;  ///< one for each row
-};
 
 }  // namespace
 
@@ -156,30 +130,47 @@ void Differences::find_distances() {
 void Differences::find_kink(const RunPair& run_pair) {
   constexpr double k_smaller = 0.1;       // step at which the sides are compared again, over the first one
   constexpr std::size_t k_compared = 20;  // rows, about, that are compared there
-  const auto difference_of_sides = [&](const Partnership& of, std::size_t column, double step) {
-    const double round_off = noise_ * magnitudes_[column].value;
-    SidesOfColumn sides;
-    for (std::size_t row = 0; row < history_.row_count(); ++row) {
-      const auto values = base_.side(row) == RowSide::output ? of.at_row(row, column) : std::nullopt;
-      if (!values) continue;
-      sides.add((values->upper - values->lower) / (2.0 * step), (values->second_difference() - round_off) / step);
-    }
-    return sides.difference();
-  };
-  double largest = 0.0;
-  std::size_t sharpest = 0;
+  std::vector<std::size_t> suspected;     // columns
   for (const std::size_t column : columns_) {
-    const double difference = depends(column) ? difference_of_sides(partnerships_[0], column, step()) : 0.0;
-    if (difference > largest) sharpest = column;
-    largest = std::max(largest, difference);
+    if (depends(column) && kink_in(column, partnerships_[0], step()) > 0.0) suspected.push_back(column);
   }
-  if (largest == 0.0) return;
+  if (suspected.empty()) return;
   const std::size_t stride = history_.row_count() / k_compared + 1;
   const auto nearer =
       run_pair(k_smaller * step(), base_.output_instants([&](std::size_t row) { return row % stride == 0; }));
   if (!nearer) return;
   const Partnership of_nearer(history_, base_, events_, *nearer, centre_);
-  if (difference_of_sides(of_nearer, sharpest, k_smaller * step()) > 0.0) kink_ = largest;
+  for (const std::size_t column : suspected) {
+    kink_ = std::max(kink_, kink_in(column, of_nearer, k_smaller * step()));
+  }
+}
+
+double Differences::kink_in(std::size_t column, const Partnership& of, double of_step) const {
+  constexpr double k_sharp = 1e-2;
+  constexpr double k_change = 0.3;     // of a difference that is smaller than that of the first pair
+  constexpr double k_clear = 5.0;      // over round-off
+  constexpr std::size_t k_least = 10;  // one row in ten
+  const auto difference = [&](const Partnership& in, std::size_t row, double step) {
+    const auto values = in.at_row(row, column);
+    return values ? values->second_difference() / step : k_nan;
+  };
+  const auto round_off = [&](double step) { return noise_ * magnitudes_[column].value / step; };
+  const double least = k_sharp * magnitudes_[column].derivative + round_off(step());
+  std::size_t rows = 0;
+  std::size_t sharp_rows = 0;
+  double largest = 0.0;
+  for (std::size_t row = 0; row < history_.row_count(); ++row) {
+    if (base_.side(row) != RowSide::output) continue;
+    const double first = difference(partnerships_[0], row, step());
+    const double here = difference(of, row, of_step);
+    if (std::isnan(first) || std::isnan(here)) continue;
+    ++rows;
+    const bool is_kept = std::abs(here - first) <= k_change * first && here > k_clear * round_off(of_step);
+    if (!is_kept || first <= least) continue;
+    ++sharp_rows;
+    largest = std::max(largest, first);
+  }
+  return sharp_rows * k_least < rows ? 0.0 : largest / magnitudes_[column].derivative;
 }
 
 void Differences::refine(const RunPair& run_pair) {
@@ -191,7 +182,8 @@ void Differences::refine(const RunPair& run_pair) {
     for (std::size_t row = 0; row < history_.row_count(); ++row) {
       const auto values = partnerships_[0].at_row(row, column);
       if (!values) continue;
-      const Quotient of = quotient(*values, magnitudes_[column], step(), false, distances_[row]);
+      const Quotient of =
+          quotient(*values, magnitudes_[column], step(), base_.side(row) != RowSide::output, distances_[row]);
       const double size = magnitudes_[column].derivative;
       if (!(of.truncation > std::max(k_too_large * size, of.round_off))) continue;  // NaN is not coarse
       is_coarse[row] = true;
@@ -207,17 +199,18 @@ Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, d
                                const Distances& distances) const {
   constexpr double k_as_large = 1e-3;
   constexpr double k_counts = 1e-6;
+  constexpr double k_large = 0.1;    // derivative, over the largest one of the column
+  constexpr double k_smooth = 5e-5;  // bend, likewise; it is smaller in most smooth curves
   Quotient result{(of.upper - of.lower) / (2.0 * step), 0.0, noise_ * magnitudes.value / step};
   const double size = magnitudes.derivative;
   const double slope = std::abs(result.value);
   const double bend = of.second_difference() / step;
   const bool is_round_off = is_at_event && of.second_difference() > k_as_large * of.largest();
   if (is_round_off && size > 0.0 && 0.5 * bend > k_counts * size) return {k_nan, 0.0, 0.0};
-  const bool may_be_singular = slope > 0.1 * size && bend > result.round_off;
   result.truncation = step / value_ * bend / 6.0;
   if (kink_ > 0.0) {
     result.truncation = std::max(result.truncation, 0.5 * bend);
-  } else if (may_be_singular) {
+  } else if (bend > result.round_off) {
     PowerTruncation of_power;
     for (const double distance : distances) {
       const PowerTruncation here =
@@ -225,7 +218,10 @@ Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, d
       if (here.error < of_power.error) of_power = here;
     }
     result.value -= of_power.value;
-    result.truncation = std::max(result.truncation, std::min(of_power.error, 0.5 * bend * bend / slope));
+    const bool is_bent = slope > k_large * size || bend > k_smooth * size;
+    const double elsewhere = is_bent ? 0.5 * bend * std::min(1.0, bend / slope) : k_infinity;
+    const double error = std::min(of_power.error, elsewhere);
+    if (std::isfinite(error)) result.truncation = std::max(result.truncation, error);
   }
   return result;
 }

@@ -80,16 +80,28 @@ class Differences {
   /// Finds the distances of all rows by the first pair.
   void find_distances();
   /// Finds out whether the curves have a kink at the key's value: the derivatives on its two sides then differ, in many
-  /// rows and however small the step is.
+  /// rows and as much with a smaller step. Next to a singularity they differ in few rows, and in proportion to the
+  /// step.
   void find_kink(const RunPair& run_pair);
+  /// Largest difference of a column's derivatives on the two sides of the key's value, over the largest derivative. 0
+  /// unless at least one output row in ten has a difference above 1 % that stays within 30 % in another pair of runs
+  /// and is clear of its round-off.
+  /// @param of       the other pair, which may have fewer rows
+  /// @param of_step  step of the other pair
+  [[nodiscard]] double kink_in(std::size_t column, const Partnership& of, double of_step) const;
   /// Makes a second pair of runs if truncation is too large in some rows. Its step balances the two errors in the worst
   /// of them.
   void refine(const RunPair& run_pair);
   /// Central difference without its truncation next to an event, and its errors. Truncation f''' h^2/6 follows from the
-  /// bend f'' h: with f''' = f''/p, as in a smooth curve; with f''' = (n - 2) f''/x where the bend shows that the curve
-  /// is a power n of the distance x from an event, and the truncation is subtracted; or with f''' = 3 f''^2/f', as next
-  /// to another square root, where derivatives are large. In a row at an event, a column may be nothing but round-off;
-  /// its values then differ as much as they are large, and it has no derivative.
+  /// bend f'' h, with
+  /// - f''' = f''/p in a smooth curve,
+  /// - f''' = (n - 2) f''/x where the bend shows that the curve is a power n of the distance x from an event; this
+  ///   truncation is subtracted,
+  /// - f''' = 3 f''^2/f', as next to another square root, where the derivative is large or the bend exceeds that of a
+  ///   smooth curve. The error is f'' h/2 at most: half the difference of the two sides of a kink within the step.
+  ///
+  /// In a row at an event, a column may be nothing but round-off; its values then differ as much as they are large, and
+  /// it has no derivative.
   [[nodiscard]] Quotient quotient(const Triple& of, const Magnitudes& magnitudes, double step, bool is_at_event,
                                   const Distances& distances) const;
   /// The more accurate quotient of the two pairs. Where they differ by more than round-off, their difference is the
