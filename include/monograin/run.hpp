@@ -42,12 +42,12 @@ class RunResult {
   void save(const std::filesystem::path& folder) const;
 
   /// Pressure and surface under the contacts at one instant. Runs the scenario again up to that instant.
-  /// @param time  [s], within the run
+  /// @param time  [s], within the run; at an event, the state just before it counts
   /// @return columns `class` (words), `radius` [m], `pressure` [Pa], `displacement` [m] of the surface and
   ///         `relaxed_height` [m] of the unloaded surface: a row for each point of each class of contacts that is
   ///         closed
-  /// @throws std::runtime_error if the model has no profile, the run ends before the instant, or no contact is closed
-  ///         then; the message says which
+  /// @throws std::runtime_error if the model has no profile, the instant is not finite or negative, the run ends before
+  ///         it, or no contact is closed then; the message says which
   /// @throws RunInterrupted if the options end the run
   [[nodiscard]] History profile(double time, const RunOptions& options = {}) const;
 

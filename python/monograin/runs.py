@@ -410,14 +410,15 @@ class Run:
         """Returns pressure and surface under the contacts at one instant, and runs the scenario again up to it.
 
         Args:
-            time: instant [s] within the run.
+            time: instant [s] within the run. At an event, the state just before it counts.
 
         Returns:
             Table with columns ``class``, ``radius`` [m], ``pressure`` [Pa], ``displacement`` [m] of the surface and
             ``relaxed_height`` [m] of the unloaded surface; a row for each point of each closed contact class.
 
         Raises:
-            RuntimeError: if the model has no profile, the run ends before the instant, or no contact is closed then.
+            RuntimeError: if the model has no profile, the instant is not finite or negative, the run ends before it, or
+                no contact is closed then.
         """
         return Table(self.scenario._core.profile(time))
 

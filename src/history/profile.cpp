@@ -12,7 +12,9 @@
 namespace monograin {
 namespace {
 
-/// Keeps the profiles at one output point.
+struct InstantHasCome {};  // ends the drive
+
+/// Keeps the profiles at one output point, and ends the drive there.
 class ProfileSink final : public HistorySink {
  public:
   ProfileSink(HybridSystem& system, double instant) : system_(system), instant_(instant) {
@@ -34,19 +36,18 @@ class ProfileSink final : public HistorySink {
   void append(RowSide side) override {
     // The start of the run is an output point, too. An output point at a corner of the program has the corner's time.
     const bool is_asked_for = std::abs(time_ - instant_) <= k_same_number * instant_;
-    if (side != RowSide::output || has_come_ || !is_asked_for) return;
-    has_come_ = true;
+    if (side != RowSide::output || !is_asked_for) return;
     for (std::size_t c = 0; c < system_.classes().size(); ++c) {
       for (const SurfacePoint& p : system_.surface(static_cast<int>(c), xi_, state_)) {
         const double row[] = {static_cast<double>(c), p.radius, p.pressure, p.displacement, p.relaxed_height};
         profiles_.append(row);
       }
     }
+    throw InstantHasCome();
   }
 
   void event(const Event&) override {}
 
-  [[nodiscard]] bool has_come() const noexcept { return has_come_; }
   [[nodiscard]] const Table& profiles() const noexcept { return profiles_; }
 
  private:
@@ -56,7 +57,6 @@ class ProfileSink final : public HistorySink {
   Table profiles_;
   double xi_ = 0.0;
   std::vector<double> state_;
-  bool has_come_ = false;
 };
 
 }  // namespace
@@ -70,17 +70,22 @@ Table contact_profiles(const CheckedScenario& scenario, double time, const Syste
     throw std::runtime_error(fmt::format("model '{}' has no profile under its contacts; those of {} have one",
                                          scenario.model, listed(names)));
   }
+  if (!std::isfinite(time) || time < 0.0) {
+    throw std::runtime_error(
+        fmt::format("there is no profile at t = {:g} s: expected a finite instant, 0 or later", time));
+  }
   Scene scene = make_scene(scenario);
   if (wrapped) scene.system = wrapped(std::move(scene.system));
   ProfileSink sink(*scene.system, time);
   const Output output{.points = 0, .times = {time}};
   const IntegratorChoice integrator = choose_integrator(scenario.numerics.integrator, *scene.system);
-  const DriveResult result =
-      drive(scene, integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, output, sink);
-  if (!sink.has_come()) {
+  try {
+    const DriveResult result =
+        drive(scene, integrator.used, {scenario.numerics.rtol, scenario.numerics.atol}, output, sink);
     throw std::runtime_error(
         fmt::format("there is no profile at t = {:g} s: the run {}", time,
                     result.message.empty() ? "does not come to that instant" : "ended before, at " + result.message));
+  } catch (const InstantHasCome&) {
   }
   Table profiles = sink.profiles();
   if (profiles.row_count() == 0) {

@@ -94,6 +94,16 @@ TEST(RunResult, HasTheProfilesUnderItsContactsAtAnInstant) {
   EXPECT_NEAR(force / result.history["axial.force"][static_cast<std::size_t>(row)], 1.0, 1e-2);
 }
 
+TEST(RunResult, RunsTheScenarioUpToTheInstantOfAProfileOnly) {
+  const RunResult result = run(ready_scenario("cycles.toml"));
+  const auto asked_until = [&](double time) {
+    int asked = 0;
+    static_cast<void>(result.profile(time, {.stop = [&asked] { return ++asked < 0; }}));
+    return asked;
+  };
+  EXPECT_LT(10 * asked_until(0.05), asked_until(1.3));
+}
+
 TEST(RunResult, SaysWhyThereIsNoProfileAndEndsWhenItIsAskedTo) {
   const auto problem = [](const std::string& scenario, double time) -> std::string {
     try {

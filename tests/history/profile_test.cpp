@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <numbers>
 
@@ -73,8 +74,19 @@ TEST(ContactProfiles, SayWhyThereAreNone) {
   };
   EXPECT_EQ(message_at({0.1}, 7.0), "there is no profile at t = 7 s: the run does not come to that instant");
   EXPECT_EQ(message_at({0.1, -0.1}, 1.9), "there is no profile at t = 1.9 s: no contact is closed then");
+  for (const double time : {HUGE_VAL, std::nan(""), -1.0}) {
+    EXPECT_NE(message_at({0.1}, time).find("expected a finite instant, 0 or later"), std::string::npos) << time;
+  }
   const std::string used_up = message_at({0.6}, 0.999, Configuration::die);
   EXPECT_NE(used_up.find("the run ended before, at step 1"), std::string::npos) << used_up;
+}
+
+TEST(ContactProfiles, AreThoseJustBeforeAnEventAtItsTime) {
+  CheckedScenario scenario = mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.2, 0.1}));
+  scenario.material["surface_energy"] = 1e-4;
+  const double pulled_off = run(scenario).time_of("pull-off");
+  EXPECT_GT(contact_profiles(scenario, pulled_off).row_count(), 0U);
+  EXPECT_THROW(static_cast<void>(contact_profiles(scenario, 1.001 * pulled_off)), std::runtime_error);
 }
 
 TEST(ContactProfiles, AreThereForTheModelsThatClaimThem) {
