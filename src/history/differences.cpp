@@ -146,10 +146,10 @@ void Differences::find_kink(const RunPair& run_pair) {
 }
 
 double Differences::kink_in(std::size_t column, const Partnership& of, double of_step) const {
-  constexpr double k_sharp = 1e-2;
-  constexpr double k_change = 0.3;     // of a difference that is smaller than that of the first pair
-  constexpr double k_clear = 5.0;      // over round-off
-  constexpr std::size_t k_least = 10;  // one row in ten
+  constexpr double k_sharp = 1e-2;     // difference of the sides, over the largest derivative
+  constexpr double k_change = 0.3;     // of the difference in the other pair, over that in the first one
+  constexpr double k_clear = 5.0;      // difference in the other pair, over its round-off
+  constexpr std::size_t k_least = 10;  // rows, of which one shows the kink
   const auto difference = [&](const Partnership& in, std::size_t row, double step) {
     const auto values = in.at_row(row, column);
     return values ? values->second_difference() / step : k_nan;

@@ -335,6 +335,8 @@ def test_a_profile_carries_the_force_of_its_instant(die):
 def test_a_profile_beyond_the_run_is_an_error(die):
     with pytest.raises(RuntimeError, match="no profile"):
         die.run().profile(99.0)
+    with pytest.raises(RuntimeError, match="expected a finite instant, 0 or later"):
+        die.run().profile(float("inf"))
     with pytest.raises(RuntimeError, match="has no profile"):
         mg.scenario("packing").run().profile(0.5)
 
