@@ -4,6 +4,9 @@
 
 #include <map>
 #include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "bindings.hpp"
 #include "history/compare.hpp"
@@ -13,28 +16,28 @@
 namespace monograin::python {
 namespace {
 
+/// Table of a study, warnings, and why there is no figure.
+template <class Table>
+using Found = std::tuple<Table, std::vector<std::string>, std::string>;
+
 /// @return the results; None if runs of other shards are missing
-std::optional<History> sweep(const std::string& file, const std::optional<std::string>& text, const std::string& folder,
-                             int threads, int shard, int shard_count) {
-  if (shard < 1 || shard > shard_count) throw std::invalid_argument("shard: expected (i, n) with i from 1 to n");
+Found<std::optional<History>> sweep(const std::string& file, const std::optional<std::string>& text,
+                                    const std::string& folder, int threads, int shard, int shard_count) {
   study::SweepResult found = run_interruptibly([&](const auto& stop) {
-    return study::sweep({file, text, {}}, {.folder = folder,
-                                           .threads = threads,
-                                           .shard = static_cast<std::size_t>(shard),
-                                           .shard_count = static_cast<std::size_t>(shard_count),
-                                           .stop = stop});
+    return study::sweep(
+        {file, text, {}},
+        {.folder = folder, .threads = threads, .shard = shard, .shard_count = shard_count, .stop = stop});
   });
-  return found.missing > 0 ? std::nullopt : std::optional(found.results);
+  return {found.missing > 0 ? std::nullopt : std::optional(std::move(found.results)), std::move(found.warnings),
+          std::move(found.no_figure)};
 }
 
-/// @return the table, and warnings
-std::pair<History, std::vector<std::string>> sensitivity(const std::string& file,
-                                                         const std::optional<std::string>& text,
-                                                         const std::string& folder, int threads, double confidence) {
+Found<History> sensitivity(const std::string& file, const std::optional<std::string>& text, const std::string& folder,
+                           int threads, double confidence) {
   study::SensitivityResult found = run_interruptibly([&](const auto& stop) {
     return study::sensitivity({file, text, {}}, {.folder = folder, .threads = threads, .stop = stop}, confidence);
   });
-  return {std::move(found.table), std::move(found.warnings)};
+  return {std::move(found.table), std::move(found.warnings), std::move(found.no_figure)};
 }
 
 study::CalibrationResult calibrate(const std::string& file, const std::optional<std::string>& text,

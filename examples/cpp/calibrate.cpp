@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   const char* const file = argc > 1 ? argv[1] : "scenarios/calibrate/uniaxial.toml";
   const mg::study::CalibrationResult fit = mg::study::calibrate({.file = file}, {.folder = "runs/fit-from-cpp"});
   for (const mg::study::FittedParameter& p : fit.parameters) {
-    std::printf("%-26s %10.5g Pa, 95 %% in [%.5g, %.5g]\n", p.key.c_str(), p.value, p.lower, p.upper);
+    std::printf("%-26s %10.5g %s, 95 %% in [%.5g, %.5g]\n", p.key.c_str(), p.value, p.unit.c_str(), p.lower, p.upper);
   }
   for (const std::string& warning : fit.warnings) std::printf("warning: %s\n", warning.c_str());
 

@@ -17,14 +17,18 @@ namespace monograin::study {
 
 /// A sweep file, a calibration file, or a plan of an experiment.
 struct Source {
-  std::filesystem::path file{};               ///< messages show it; file names in its text are relative to its folder
-  std::optional<std::string> text{};          ///< its text in TOML; none: the file is read
-  std::map<std::string, std::string> data{};  ///< texts of files of data, by the names in the text; others are read
+  /// Messages show it; file names in the text are relative to its folder. A text without it is that of `study.toml`.
+  std::filesystem::path file{};
+  std::optional<std::string> text{};  ///< its text in TOML; none: the file is read
+  /// Texts of a calibration's files of data, by the names in its text; others are read. Only calibrations have data.
+  std::map<std::string, std::string> data{};
 };
 
 /// Options of calibrate() and design().
 struct Options {
-  std::filesystem::path folder{};  ///< for the files that the program writes; empty: none are written
+  /// For the files that the program writes; empty: none are written. Files of the same result there are replaced, and
+  /// files of other names stay.
+  std::filesystem::path folder{};
   /// Asked now and then. Returning true ends the study by RunInterrupted; all files are written then, or none. An empty
   /// function never ends it.
   std::function<bool()> stop{};
@@ -32,10 +36,12 @@ struct Options {
 
 /// Options of sweep() and sensitivity().
 struct SweepOptions {
-  std::filesystem::path folder{};  ///< of the results; empty: runs/NAME of the current folder
-  int threads = 0;                 ///< number of threads; 0: one for each core
-  std::size_t shard = 1;           ///< from 1 to shard_count: only every shard_count-th run from this one on is done
-  std::size_t shard_count = 1;     ///< number of processes that share the folder
+  /// For the results, which are always written; empty: runs/NAME of the current folder. Results of another sweep there
+  /// are replaced, and files of other names stay.
+  std::filesystem::path folder{};
+  int threads = 0;      ///< number of threads; 0: one for each core
+  int shard = 1;        ///< from 1 to shard_count: only every shard_count-th run from this one on is done
+  int shard_count = 1;  ///< number of processes that share the folder
   /// Asked after each run, by one thread at a time. Returning true ends the sweep by RunInterrupted; complete runs stay
   /// in the folder, and the next call does the others. An empty function never ends it.
   std::function<bool()> stop{};
@@ -43,17 +49,22 @@ struct SweepOptions {
 
 struct SweepResult {
   std::filesystem::path folder;
-  std::size_t missing = 0;  ///< number of runs that other shards have yet to do
-  /// Content of results.csv, once no run is missing: a row for each run with its keys, `status`, `reason`, and the
-  /// final
-  /// (`end.axial.force`) and largest (`max.axial.force`) value of every column, in SI units.
+  std::size_t missing = 0;   ///< number of runs that other shards have yet to do
+  std::size_t left_out = 0;  ///< number of points of the design that do not meet its constraints
+  /// Content of results.csv, once no run is missing: a row for each run with its keys, `status` and `reason`, and the
+  /// final (`end.axial.force`) and largest (`max.axial.force`) value of every column, in SI units.
   History results;
+  std::vector<std::string> warnings;  ///< values that may not be meant as they are read, a sentence each
+  std::string no_figure;  ///< why the folder has no figure of the bands; empty: it has one, or none was requested
 };
 
 /// Runs a sweep, as `monograin sweep` does. Runs that are in the folder already are not repeated.
 /// @throws ScenarioError with all faults of the sweep and its scenario
-/// @throws std::invalid_argument for negative threads, or a shard that is not from 1 to the number of shards
-/// @throws std::runtime_error if the folder holds other files or cannot be written
+/// @throws std::invalid_argument for a source without file and text or with data, negative threads, or a shard that is
+///         not from 1 to the number of shards
+/// @throws std::runtime_error before any run if the folder holds a run, a calibration or a plan, or a file of the user
+///         with the name of one to write, or cannot be written; after the runs for bands of columns that the histories
+///         do not have
 /// @throws RunInterrupted if the options end the sweep
 [[nodiscard]] SweepResult sweep(const Source& source, const SweepOptions& options = {});
 
@@ -63,16 +74,17 @@ struct SensitivityResult {
   /// the elementary effects (design `morris`), and their intervals.
   History table;
   std::vector<std::string> warnings;  ///< why the values are not to be trusted, a sentence each
+  std::string no_figure;              ///< why the folder has no figure; empty: it has one
 };
 
 /// Runs a sweep and computes how much each key contributes to the spread of its results, as `monograin sensitivity`
 /// does.
 /// @param confidence  level of the two-sided intervals, in (0, 1)
 /// @throws ScenarioError with all faults of the sweep and its scenario
-/// @throws std::invalid_argument for another design than `saltelli` and `morris`, another confidence, negative threads,
-///         or shards
-/// @throws std::runtime_error for a formula that cannot be evaluated with the columns of the results, or if the folder
-///         holds other files or cannot be written
+/// @throws std::invalid_argument before any run for another design than `saltelli` and `morris`, another confidence, or
+///         shards; otherwise as sweep()
+/// @throws std::runtime_error for a formula that cannot be evaluated with the columns of the results; otherwise as
+///         sweep()
 /// @throws RunInterrupted if the options end the sweep
 [[nodiscard]] SensitivityResult sensitivity(const Source& source, const SweepOptions& options = {},
                                             double confidence = 0.95);
@@ -80,6 +92,7 @@ struct SensitivityResult {
 /// A fitted number of a scenario, in SI units.
 struct FittedParameter {
   std::string key;              ///< as Scenario::set() takes it
+  std::string unit;             ///< SI unit of the numbers below; - for a pure number
   double value = 0.0;           ///< of the best fit
   double standard_error = 0.0;  ///< of the linearised fit; NaN if the data do not determine the value
   double lower = 0.0;           ///< ends of the two-sided confidence interval; NaN if there is none
@@ -101,9 +114,12 @@ struct CalibrationResult {
 
 /// Fits parameters of a scenario to measured data, as `monograin calibrate` does.
 /// @param confidence  level of the intervals, in (0, 1); none: that of the file, or 0.95
-/// @throws ScenarioError with all faults of calibration, scenario and data, or if the scenario cannot follow the data
-/// @throws std::invalid_argument for another confidence
-/// @throws std::runtime_error if the folder holds other files or cannot be written
+/// @throws ScenarioError with all faults of calibration, scenario and data, such as data in the source that the text
+///         does not name, or if the scenario cannot follow the data
+/// @throws std::invalid_argument for another confidence, or a source without file and text
+/// @throws std::runtime_error before the fit if the folder holds a run or a plan, or a file of the user with the name
+/// of
+///         one to write, or cannot be written
 /// @throws RunInterrupted if the options end the calibration
 [[nodiscard]] CalibrationResult calibrate(const Source& source, const Options& options = {},
                                           std::optional<double> confidence = {});
@@ -124,7 +140,9 @@ struct DesignResult {
 
 /// Computes the expected errors of a fit to a planned experiment, as `monograin design` does.
 /// @throws ScenarioError with all faults of plan and scenario, or if the noise of a measured row is zero
-/// @throws std::runtime_error if the folder holds other files or cannot be written
+/// @throws std::invalid_argument for a source without file and text, or with data
+/// @throws std::runtime_error before the computation if the folder holds a run or a calibration, or a file of the user
+///         with the name of one to write, or cannot be written
 /// @throws RunInterrupted if the options end the computation
 [[nodiscard]] DesignResult design(const Source& source, const Options& options = {});
 

@@ -30,7 +30,8 @@ def sweep(
 ) -> Optional[Table]:
     """Runs a sweep on several threads, as ``monograin sweep`` does.
 
-    An interrupted sweep goes on from the runs that are in its folder. Results of another sweep there are replaced.
+    An interrupted sweep goes on from the runs that are in its folder. Results of another sweep there are replaced. Values
+    that may not be meant as they are read, and a figure that cannot be drawn, give a ``RuntimeWarning``.
 
     Args:
         source: a sweep file (TOML), or a dict of the same structure, whose file names are relative to the current
@@ -47,10 +48,12 @@ def sweep(
 
     Raises:
         ScenarioError: with every fault of the sweep and its scenario.
-        RuntimeError: if the folder holds other files or cannot be written.
+        RuntimeError: before any run, if the folder holds a run, a calibration or a plan, or a file of yours with the name of
+            one to write, or cannot be written; after the runs, for bands of columns that the histories lack.
         KeyboardInterrupt: on Ctrl-C. Complete runs stay in the folder, and the next call does the others.
     """
-    results = _core.sweep(*_named_text(source, "sweep.toml"), _folder(folder), threads, *shard)
+    results, remarks, no_figure = _core.sweep(*_named_text(source, "sweep.toml"), _folder(folder), threads, *shard)
+    _warn(remarks, no_figure)
     return None if results is None else Table(results)
 
 
@@ -59,7 +62,7 @@ def sensitivity(source: Source, folder: Optional[Path] = None, *, threads: int =
     """Computes how much each key contributes to the spread of results, as ``monograin sensitivity`` does.
 
     Results that runs lack, that runs took before the end of their programs, or that are the same in every run, give a
-    ``RuntimeWarning``.
+    ``RuntimeWarning``, and so do the values and figures of :func:`sweep`.
 
     Args:
         source: a sweep as for :func:`sweep`, of design ``saltelli`` or ``morris``, with formulas of ``results``.
@@ -75,12 +78,12 @@ def sensitivity(source: Source, folder: Optional[Path] = None, *, threads: int =
 
     Raises:
         ScenarioError: with every fault of the sweep and its scenario.
-        ValueError: for another design, or a confidence outside of (0, 1).
-        RuntimeError: for a formula that cannot be evaluated with the columns of the results.
+        ValueError: before any run, for another design, or a confidence outside of (0, 1).
+        RuntimeError: for a formula that cannot be evaluated with the columns of the results, and as for :func:`sweep`.
     """
-    table, remarks = _core.sensitivity(*_named_text(source, "sweep.toml"), _folder(folder), threads, confidence)
-    for remark in remarks:
-        warnings.warn(remark, RuntimeWarning, stacklevel=3)
+    named_text = _named_text(source, "sweep.toml")
+    table, remarks, no_figure = _core.sensitivity(*named_text, _folder(folder), threads, confidence)
+    _warn(remarks, no_figure)
     return Table(table)
 
 
@@ -248,14 +251,13 @@ def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Opti
     Raises:
         ScenarioError: with every fault of calibration, scenario and data.
         ValueError: for data whose columns are not of equal length.
+        RuntimeError: before the fit, if the folder holds a run or a plan, or a file of yours with the name of one to write,
+            or cannot be written.
         KeyboardInterrupt: on Ctrl-C; all files of the folder are written then, or none.
     """
     complete, data = _data_as_texts(source)
     core = _core.calibrate(*_named_text(complete, "calibration.toml"), data, _folder(folder), confidence)
-    if core.no_figure:
-        warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=3)
-    for warning in core.warnings:
-        warnings.warn(warning, RuntimeWarning, stacklevel=3)
+    _warn(core.warnings, core.no_figure)
     return Calibration(core)
 
 
@@ -378,12 +380,12 @@ def design(source: Source, folder: Optional[Path] = None) -> Design:
 
     Raises:
         ScenarioError: with every fault of plan and scenario, or if the noise of a measured row is zero.
-        RuntimeError: if the folder holds other files or cannot be written.
+        RuntimeError: before the computation, if the folder holds a run or a calibration, or a file of yours with the name
+            of one to write, or cannot be written.
         KeyboardInterrupt: on Ctrl-C; all files of the folder are written then, or none.
     """
     core = _core.design(*_named_text(source, "design.toml"), _folder(folder))
-    if core.no_figure:
-        warnings.warn(f"no figure: {core.no_figure}", RuntimeWarning, stacklevel=3)
+    _warn([], core.no_figure)
     return Design(core)
 
 
@@ -479,6 +481,12 @@ def _parts_of(core: Any) -> dict[str, Any]:
 def _restored(kind: Any, parts: dict[str, Any]) -> Any:
     core = {name: value._core if isinstance(value, Table) else value for name, value in parts.items()}
     return kind(types.SimpleNamespace(**core))
+
+
+def _warn(remarks: Sequence[str], no_figure: str) -> None:
+    """Warns the caller of a study: that its figure cannot be drawn, and of each remark."""
+    for remark in ([f"no figure: {no_figure}"] if no_figure else []) + list(remarks):
+        warnings.warn(remark, RuntimeWarning, stacklevel=4)
 
 
 def _folder(folder: Optional[Path]) -> str:

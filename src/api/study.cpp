@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
 
 #include "history/staged_folder.hpp"
 #include "monograin/status.hpp"
 #include "scenario/text_file.hpp"
+#include "scenario/units.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/identify/identify_files.hpp"
 #include "study/sweep/bands.hpp"
@@ -20,7 +22,11 @@ namespace fs = std::filesystem;
 
 /// @param expected  what the file should be: "a sweep file"
 NamedText text_of(const Source& source, std::string_view expected) {
-  return source.text ? NamedText{.text = *source.text, .file = source.file} : read_named_text(source.file, expected);
+  if (!source.text && source.file.empty()) {
+    throw std::invalid_argument(fmt::format("the source has no file and no text; expected {}", expected));
+  }
+  if (!source.text) return read_named_text(source.file, expected);
+  return {.text = *source.text, .file = source.file.empty() ? fs::path("study.toml") : source.file};
 }
 
 History history_of(Table table) { return History(std::make_shared<const Table>(std::move(table))); }
@@ -35,7 +41,17 @@ void check_confidence(double confidence) {
   }
 }
 
-Sweep plan_of(const Source& source) { return parse_sweep(text_of(source, "a sweep file")); }
+/// Text of a study that has no data. @throws std::invalid_argument if the source has data
+NamedText text_without_data(const Source& source, std::string_view expected) {
+  if (!source.data.empty()) {
+    throw std::invalid_argument(
+        fmt::format("the source has data, '{}': expected none, because only calibrations have data in memory",
+                    source.data.begin()->first));
+  }
+  return text_of(source, expected);
+}
+
+Sweep plan_of(const Source& source) { return parse_sweep(text_without_data(source, "a sweep file")); }
 
 /// Does the runs of a sweep, or of its shard.
 SweepResult run_plan(const Sweep& plan, const SweepOptions& options) {
@@ -47,19 +63,18 @@ SweepResult run_plan(const Sweep& plan, const SweepOptions& options) {
     throw std::invalid_argument(
         fmt::format("shard = {}: expected 1 to the number of shards, {}", options.shard, options.shard_count));
   }
-  SweepResult result{.folder = options.folder.empty() ? fs::path("runs") / plan.name : options.folder, .results = {}};
-  const SweepOutcome outcome =
-      run_sweep(plan, {.folder = result.folder,
-                       .threads = options.threads,
-                       .shard = {options.shard, options.shard_count},
-                       .progress = [&](std::size_t, std::size_t) { end_if_asked(options.stop); }});
+  SweepResult result{.folder = folder_of(plan, options.folder),
+                     .left_out = plan.left_out,
+                     .results = {},
+                     .warnings = plan.doubts,
+                     .no_figure = {}};
+  const SweepOutcome outcome = run_sweep(
+      plan, {.folder = result.folder,
+             .threads = options.threads,
+             .shard = {static_cast<std::size_t>(options.shard), static_cast<std::size_t>(options.shard_count)},
+             .progress = [&](std::size_t, std::size_t) { end_if_asked(options.stop); }});
   result.missing = outcome.runs_missing;
   return result;
-}
-
-/// Writes the bands that a sweep file requests.
-void add_bands(const Sweep& plan, const fs::path& folder) {
-  if (plan.bands) static_cast<void>(write_bands(plan, bands_of(plan, folder), folder));
 }
 
 }  // namespace
@@ -68,7 +83,7 @@ SweepResult sweep(const Source& source, const SweepOptions& options) {
   const Sweep plan = plan_of(source);
   SweepResult result = run_plan(plan, options);
   if (result.missing > 0) return result;
-  add_bands(plan, result.folder);
+  if (plan.bands) result.no_figure = write_bands(plan, bands_of(plan, result.folder), result.folder);
   result.results = history_of(read_csv(result.folder / "results.csv"));
   return result;
 }
@@ -77,12 +92,14 @@ SensitivityResult sensitivity(const Source& source, const SweepOptions& options,
   check_confidence(confidence);
   if (options.shard_count != 1) throw std::invalid_argument("shard: sensitivities take all runs of a sweep");
   const Sweep plan = plan_of(source);
+  if (const std::string why_not = why_no_sensitivities(plan); !why_not.empty()) throw std::invalid_argument(why_not);
   const fs::path folder = run_plan(plan, options).folder;
-  add_bands(plan, folder);
   const std::vector<ResultSensitivity> found = sensitivities_of(plan, folder, confidence);
-  static_cast<void>(write_sensitivities(plan, found, folder));
-  SensitivityResult result{
-      .folder = folder, .table = history_of(read_csv(folder / k_sensitivities_file)), .warnings = {}};
+  const std::string no_figure = write_sensitivities(plan, found, folder);
+  SensitivityResult result{.folder = folder,
+                           .table = history_of(read_csv(folder / k_sensitivities_file)),
+                           .warnings = plan.doubts,
+                           .no_figure = no_figure};
   for (const ResultSensitivity& one : found) {
     result.warnings.insert(result.warnings.end(), one.warnings.begin(), one.warnings.end());
   }
@@ -93,6 +110,8 @@ CalibrationResult calibrate(const Source& source, const Options& options, std::o
   if (confidence) check_confidence(*confidence);
   Calibration calibration = parse_calibration(text_of(source, "a calibration file"), source.data);
   calibration.confidence = confidence.value_or(calibration.confidence);
+  std::optional<StagedFolder> staged;
+  if (!options.folder.empty()) staged.emplace(options.folder, k_calibration_marker, k_calibration_tables);
   const monograin::CalibrationResult found =
       monograin::calibrate(calibration, [&](double) { end_if_asked(options.stop); });
   FileTexts files = fitted_scenario_files(calibration);
@@ -108,22 +127,23 @@ CalibrationResult calibrate(const Source& source, const Options& options, std::o
       .json = calibration_json(calibration, found),
       .no_figure = {}};
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
-    result.parameters.push_back({.key = calibration.free[k].key.path,
+    const NumberKey& key = calibration.free[k].key;
+    result.parameters.push_back({.key = key.path,
+                                 .unit = si_unit(key.dimension),
                                  .value = found.solution.parameters[k],
                                  .standard_error = found.uncertainty.standard_error(k),
                                  .lower = found.intervals[k].lower,
                                  .upper = found.intervals[k].upper,
                                  .is_determined = found.uncertainty.is_determined[k]});
   }
-  if (!options.folder.empty()) {
-    StagedFolder staged(options.folder, k_calibration_marker);
-    result.no_figure = write_calibration(calibration, found, staged);
-  }
+  if (staged) result.no_figure = write_calibration(calibration, found, *staged);
   return result;
 }
 
 DesignResult design(const Source& source, const Options& options) {
-  const ExperimentPlan plan = parse_experiment_plan(text_of(source, "a plan of an experiment"));
+  const ExperimentPlan plan = parse_experiment_plan(text_without_data(source, "a plan of an experiment"));
+  std::optional<StagedFolder> staged;
+  if (!options.folder.empty()) staged.emplace(options.folder, k_identify_marker);
   const IdentifyResult found = identify(plan, [&] { end_if_asked(options.stop); });
   DesignResult result{.name = plan.name,
                       .programs = {},
@@ -144,10 +164,7 @@ DesignResult design(const Source& source, const Options& options) {
   }
   if (found.best_by_volume) result.best_by_volume = result.candidates[*found.best_by_volume];
   if (found.best_by_variances) result.best_by_variances = result.candidates[*found.best_by_variances];
-  if (!options.folder.empty()) {
-    StagedFolder staged(options.folder, k_identify_marker);
-    result.no_figure = write_identify(plan, found, staged);
-  }
+  if (staged) result.no_figure = write_identify(plan, found, *staged);
   return result;
 }
 

@@ -75,10 +75,6 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, con
   say("{}\n", text);
 }
 
-[[nodiscard]] fs::path folder_of(const Sweep& plan, const std::string& output) {
-  return output.empty() ? fs::path("runs") / plan.name : fs::path(output);
-}
-
 /// Makes the runs of a sweep that are still missing, as far as they belong to the shard.
 /// @return number of runs that are then still missing
 std::size_t run_all(const Sweep& plan, const fs::path& folder, int threads, SweepShard shard, bool is_quiet = false) {
@@ -126,10 +122,8 @@ struct SensitivityOptions {
 int sensitivity(const SensitivityOptions& options) {
   const Sweep plan = read_sweep(options.file);
   say_warnings(plan.name, plan.doubts);
-  if (plan.results.empty()) {
-    throw UsageError(fmt::format(
-        "{}: design = \"{}\"; expected \"saltelli\" for Sobol indices, or \"morris\" for elementary effects",
-        options.file, plan.design));
+  if (const std::string why_not = why_no_sensitivities(plan); !why_not.empty()) {
+    throw UsageError(fmt::format("{}: {}", options.file, why_not));
   }
   const fs::path folder = folder_of(plan, options.output);
   run_all(plan, folder, options.threads, {});

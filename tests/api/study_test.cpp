@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -61,6 +62,88 @@ TEST(StudySweep, IsDoneInShardsAndGoesOnWhereItWasEnded) {
   EXPECT_EQ(asked, 1) << "the runs before the end were kept";
 }
 
+/// A folder with a file of the user.
+fs::path with_foreign(const fs::path& folder, const std::string& name) {
+  fs::create_directories(folder);
+  std::ofstream(folder / name) << "mine\n";
+  return folder;
+}
+
+/// Expects a study to refuse a folder before it computes anything, and to keep the file of the user there.
+/// @param study  called with a folder and a function `stop`
+template <class Study>
+void expect_refused_at_once(const fs::path& folder, const std::string& name, Study&& study) {
+  int asked = 0;
+  try {
+    study(with_foreign(folder, name), [&asked] { return ++asked < 0; });
+    ADD_FAILURE() << "nothing was thrown for " << name;
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string_view(error.what()).find(name), std::string_view::npos) << error.what();
+  }
+  EXPECT_EQ(asked, 0) << name << " was refused after computations";
+  std::string kept;
+  std::getline(std::ifstream(folder / name) >> std::ws, kept);
+  EXPECT_EQ(kept, "mine");
+}
+
+TEST(Study, RefusesAFolderWithAFileOfTheUserBeforeItComputesAnything) {
+  const TemporaryFolder folder;
+  using Stop = std::function<bool()>;
+  expect_refused_at_once(folder.path() / "s", "results.csv", [](const fs::path& taken, const Stop& stop) {
+    static_cast<void>(sweep(yield_stresses("[30e6, 40e6]"), {.folder = taken, .stop = stop}));
+  });
+  for (const char* name : {"fit.csv", "fitted.toml"}) {
+    expect_refused_at_once(folder.path() / name, name, [](const fs::path& taken, const Stop& stop) {
+      const Source source{.file = k_scenarios / "calibrate" / "uniaxial.toml"};
+      static_cast<void>(calibrate(source, {.folder = taken, .stop = stop}));
+    });
+  }
+  expect_refused_at_once(folder.path() / "d", "errors.csv", [](const fs::path& taken, const Stop& stop) {
+    const Source source{.file = k_scenarios / "design" / "uniaxial.toml"};
+    static_cast<void>(design(source, {.folder = taken, .stop = stop}));
+  });
+}
+
+TEST(Study, RefusesASourceThatIsEmptyOrHasDataThatItDoesNotUse) {
+  EXPECT_THROW(static_cast<void>(sweep({})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(calibrate({})), std::invalid_argument);
+  Source source = yield_stresses("[30e6, 40e6]");
+  source.data = {{"die.toml", "not read"}};
+  EXPECT_THROW(static_cast<void>(sweep(source)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(sensitivity(source)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(design({.file = k_scenarios / "design" / "uniaxial.toml", .data = source.data})),
+               std::invalid_argument);
+  try {
+    static_cast<void>(sweep({.text = "scenario = \"none.toml\"\n"}));
+    FAIL() << "nothing was thrown";
+  } catch (const ScenarioError& error) {
+    EXPECT_TRUE(std::string_view(error.what()).starts_with("study.toml:1:")) << error.what();
+  }
+  try {
+    static_cast<void>(calibrate({.file = k_scenarios / "calibrate" / "uniaxial.toml", .data = {{"other.csv", "1,2"}}}));
+    FAIL() << "nothing was thrown";
+  } catch (const ScenarioError& error) {
+    for (const char* part : {"'other.csv'", "'uniaxial.csv'"}) {
+      EXPECT_NE(std::string_view(error.what()).find(part), std::string_view::npos) << error.what();
+    }
+  }
+}
+
+TEST(StudySweep, CountsThePointsOutsideOfItsConstraintsAndWarnsOfNumbersWithoutUnits) {
+  const TemporaryFolder folder;
+  const SweepResult doubtful = sweep(yield_stresses("[\"40 MPa\", 50]"), {.folder = folder.path() / "doubtful"});
+  ASSERT_EQ(doubtful.warnings.size(), 1U);
+  EXPECT_NE(doubtful.warnings[0].find("yield_stress"), std::string::npos) << doubtful.warnings[0];
+  Source source = yield_stresses("[30e6, 40e6, 50e6]");
+  *source.text += "\"material.youngs_modulus\" = { values = [1e9, 45e6] }\n";
+  source.text->insert(0, "constraints = [\"material.youngs_modulus > material.yield_stress\"]\n");
+  const SweepResult found = sweep(source, {.folder = folder.path() / "s"});
+  EXPECT_EQ(found.left_out, 1U);
+  EXPECT_EQ(found.results.row_count(), 5U);
+  EXPECT_TRUE(found.warnings.empty());
+  EXPECT_EQ(found.no_figure, "");
+}
+
 TEST(StudySweep, RefusesShardsThreadsAndFaults) {
   const Source source = yield_stresses("[30e6, 40e6]");
   EXPECT_THROW(static_cast<void>(sweep(source, {.shard = 3, .shard_count = 2})), std::invalid_argument);
@@ -90,10 +173,25 @@ TEST(StudySensitivity, GivesTheSharesOfEachKey) {
   EXPECT_LT(found.table["total"][1], 0.1) << "Young's modulus";
 }
 
+TEST(StudySensitivity, RefusesADesignWithoutSensitivitiesBeforeAnyRun) {
+  const TemporaryFolder folder;
+  int asked = 0;
+  try {
+    static_cast<void>(sensitivity(yield_stresses("[30e6, 40e6]"),
+                                  {.folder = folder.path() / "s", .stop = [&asked] { return ++asked < 0; }}));
+    FAIL() << "nothing was thrown";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_TRUE(std::string_view(error.what()).starts_with("design = \"grid\" says nothing")) << error.what();
+  }
+  EXPECT_EQ(asked, 0);
+  EXPECT_FALSE(fs::exists(folder.path() / "s"));
+}
+
 TEST(StudyCalibration, FindsTheParametersOfItsDataAndTheirScenario) {
   const CalibrationResult fit = calibrate({.file = k_scenarios / "calibrate" / "uniaxial.toml"});
   ASSERT_EQ(fit.parameters.size(), 2U);
   EXPECT_EQ(fit.parameters[1].key, "material.yield_stress");
+  EXPECT_EQ(fit.parameters[1].unit, "Pa");
   for (const FittedParameter& parameter : fit.parameters) {
     EXPECT_TRUE(parameter.is_determined) << parameter.key;
     EXPECT_LT(parameter.lower, parameter.value);

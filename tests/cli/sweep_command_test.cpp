@@ -160,7 +160,8 @@ TEST_F(SweepCommand, SaysWhichKeyTheSpreadIsDueTo) {
 
 TEST_F(SweepCommand, SaysNothingOfSensitivitiesWithoutTheirDesign) {
   EXPECT_EQ(monograin("sensitivity many.toml").code, 2);
-  EXPECT_NE(text("stderr.txt").find("expected \"saltelli\" for Sobol indices"), std::string::npos)
+  EXPECT_NE(text("stderr.txt").find("says nothing of sensitivities; expected \"saltelli\" for Sobol indices"),
+            std::string::npos)
       << text("stderr.txt");
   EXPECT_FALSE(fs::exists(path("runs")));
 }

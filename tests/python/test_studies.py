@@ -65,8 +65,23 @@ def test_sensitivities_are_those_of_the_program(run_program, tmp_path):
 def test_sensitivities_need_a_design_that_tells_them(tmp_path):
     with pytest.raises(ValueError, match="says nothing of sensitivities"):
         mg.sensitivity(mg.scenario_folder() / "sweeps" / "poisson.toml", tmp_path / "grid")
+    assert not (tmp_path / "grid").exists()
     with pytest.raises(ValueError, match="confidence"):
         mg.sensitivity(mg.scenario_folder() / "sweeps" / "sobol-indices.toml", tmp_path / "x", confidence=1.0)
+
+
+def test_a_sweep_warns_of_numbers_without_units(tmp_path):
+    study = {"scenario": mg.scenario("die"), "vary": {"material.yield_stress": {"values": ["40 MPa", 50]}}}
+    with pytest.warns(RuntimeWarning, match="yield_stress") as caught:
+        mg.sweep(study, tmp_path / "out")
+    assert [warning.filename for warning in caught] == [__file__]
+
+
+def test_a_folder_with_a_file_of_the_user_is_refused(tmp_path):
+    (tmp_path / "fit.csv").write_text("mine")
+    with pytest.raises(RuntimeError, match="fit.csv"):
+        mg.calibrate(mg.scenario_folder() / "calibrate" / "uniaxial.toml", tmp_path)
+    assert (tmp_path / "fit.csv").read_text() == "mine"
 
 
 def test_a_sweep_with_faults_runs_nothing(tmp_path):
@@ -382,7 +397,7 @@ def test_a_study_refuses_a_scenario_whose_files_are_in_memory(tmp_path):
 def test_wrong_types_of_studies_are_sentences(die, tmp_path):
     with pytest.raises(TypeError, match="threads: expected int, not 1.5"):
         mg.sweep({"scenario": die, "vary": {"output.points": {"values": [20, 30]}}}, tmp_path / "swept", threads=1.5)
-    with pytest.raises(ValueError, match="shard: expected"):
+    with pytest.raises(ValueError, match="shard = -1: expected 1 to the number of shards, 2"):
         mg.sweep({"scenario": die, "vary": {"output.points": {"values": [20, 30]}}}, tmp_path / "swept", shard=(-1, 2))
     for data in (np.zeros((3, 2)), [1.0, 2.0]):
         with pytest.raises(TypeError, match="data: expected a run, a table, a file, or arrays by name"):

@@ -122,7 +122,7 @@ struct Calibration {
 /// Reads and checks a calibration file, its scenario and its data.
 /// @throws ScenarioError with all faults of all three
 [[nodiscard]] Calibration read_calibration(const std::filesystem::path& file);
-/// @param data  texts of files of data by their names; others are read
+/// @param data  texts of files of data by their names; others are read. A name that no data have is a fault.
 [[nodiscard]] Calibration parse_calibration(NamedText source, const FileTexts& data = {});
 
 /// The fitted scenario's response to one measured curve, with its confidence band.

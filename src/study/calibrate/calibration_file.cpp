@@ -52,7 +52,10 @@ class CalibrationReader {
     made_.title = root.text("title");
     has_scenario_ = read_own_scenario(root, scenario_is_table);
     read_fit(root);
-    if (root.has("data")) read_data(root);
+    if (root.has("data")) {
+      read_data(root);
+      check_given_data(root.value_place("data"));
+    }
     if (root.has("free") && has_scenario_) {
       made_.free = free_in(reading_, root, {made_.scenario, made_.scenario_text, named_scenario_.file});
     }
@@ -224,6 +227,7 @@ class CalibrationReader {
                                         const std::vector<ColumnSpec>& specs, MeasuredCurve& curve) {
     const std::string name = data.text("file");
     if (name.empty()) return {};
+    data_files_.push_back(name);
     const fs::path path = file_.parent_path() / name;
     const auto [text, problem] = text_of_data(name, path);
     if (!problem.empty()) {
@@ -242,6 +246,17 @@ class CalibrationReader {
     curve.left_out = std::move(measured.left_out);
     curve.trailer = std::move(measured.trailer);
     return measured;
+  }
+
+  /// Checks that the data use all texts that were given for them.
+  void check_given_data(const SourceLocation& where) {
+    for (const auto& [name, text] : data_) {
+      if (std::ranges::find(data_files_, name) != data_files_.end()) continue;
+      faults_.add(where, fmt::format("'{}' was given as data in memory, but no data have this file; expected the name "
+                                     "of one of theirs{}",
+                                     shown(name),
+                                     data_files_.empty() ? "" : fmt::format(": '{}'", fmt::join(data_files_, "', '"))));
+    }
   }
 
   /// Text of a file of data, or why there is none.
@@ -575,6 +590,7 @@ class CalibrationReader {
 
   fs::path file_;
   const FileTexts& data_;
+  std::vector<std::string> data_files_;  ///< names of the files of data, as the calibration has them
   FaultList faults_;
   Reading reading_;
   Calibration made_;

@@ -202,13 +202,15 @@ using Style = figure::ChartSeries::Style;
 
 }  // namespace
 
+std::string why_no_sensitivities(const Sweep& sweep) {
+  if (!sweep.results.empty()) return {};
+  return fmt::format(
+      "design = \"{}\" says nothing of sensitivities; expected \"saltelli\" for Sobol indices, or \"morris\" for "
+      "elementary effects",
+      sweep.design);
+}
+
 std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const fs::path& folder, double confidence) {
-  if (sweep.results.empty()) {
-    throw std::invalid_argument(fmt::format(
-        "design = \"{}\" says nothing of sensitivities; expected \"saltelli\" for Sobol indices, or \"morris\" for "
-        "elementary effects",
-        sweep.design));
-  }
   const Table results = read_csv(folder / "results.csv");
   std::vector<ResultSensitivity> found;
   for (const std::string& formula : sweep.results) {

@@ -24,10 +24,13 @@ struct ResultSensitivity {
   [[nodiscard]] std::size_t samples() const noexcept { return sobol.samples + morris.samples; }
 };
 
+/// Why the design of a sweep gives no sensitivities, with a remedy; empty: it gives them. To be asked before the runs.
+[[nodiscard]] std::string why_no_sensitivities(const Sweep& sweep);
+
+/// @param sweep       of a design that gives sensitivities
 /// @param folder      of a sweep that has been run, with its results
 /// @param confidence  level of the two-sided intervals, between 0 and 1
 /// @throws std::runtime_error for a formula that the columns cannot answer, with a remedy
-/// @throws std::invalid_argument if the design of the sweep gives no sensitivities
 [[nodiscard]] std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const std::filesystem::path& folder,
                                                               double confidence);
 

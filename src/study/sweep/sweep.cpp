@@ -402,6 +402,10 @@ std::size_t run_all(const Sweep& sweep, const SweepOptions& options, const std::
 
 }  // namespace
 
+fs::path folder_of(const Sweep& sweep, const fs::path& chosen) {
+  return chosen.empty() ? fs::path("runs") / sweep.name : chosen;
+}
+
 SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   prepare(options.folder);
   if (has_results(sweep, options.folder)) return {.runs_before = sweep.runs.size()};

@@ -31,6 +31,9 @@ struct SweepOutcome {
   std::size_t runs_missing = 0;      ///< left to other shards; 0: results.csv is complete
 };
 
+/// Folder of the results: the one chosen, or else runs/NAME.
+[[nodiscard]] std::filesystem::path folder_of(const Sweep& sweep, const std::filesystem::path& chosen);
+
 /// Runs the missing runs of a sweep, or of its shard, and writes results.csv once all runs of the sweep are finished.
 ///
 /// Finished runs are kept in journals, one for each shard: NAME.journal in the folder. A run that any journal holds is
