@@ -7,13 +7,27 @@
 namespace monograin::python {
 namespace {
 
+/// Why a value cannot receive numbers, as the end of a sentence; empty: it can.
+std::string why_no_output(const py::object& out) {
+  const auto text = [](const py::object& value) { return py::str(value).cast<std::string>(); };
+  if (!py::isinstance<py::array>(out)) {
+    return "not " + py::module_::import("monograin._inputs").attr("shown")(out).cast<std::string>();
+  }
+  if (py::isinstance(out, py::module_::import("numpy.ma").attr("MaskedArray"))) {
+    return "not a masked one; hand in its values, out.data, and set its mask yourself";
+  }
+  if (!py::isinstance<Array>(out)) {
+    const bool is_native = out.attr("dtype").attr("isnative").cast<bool>();
+    return "not one of " + text(out.attr("dtype")) + (is_native ? "" : ", whose byte order is not that of the machine");
+  }
+  return py::reinterpret_borrow<Array>(out).writeable() ? "" : "but this one is read-only";
+}
+
 /// @throws py::type_error for anything but a writable array of float64
 /// @throws std::invalid_argument for an array of another shape
 Array checked_output(const py::object& out, const std::vector<py::ssize_t>& shape) {
-  const bool is_right = py::isinstance<Array>(out) && py::reinterpret_borrow<Array>(out).writeable();
-  if (!is_right) {
-    const py::object shown = py::module_::import("monograin._inputs").attr("shown")(out);
-    throw py::type_error("out: expected a writable array of float64, not " + shown.cast<std::string>());
+  if (const std::string why_not = why_no_output(out); !why_not.empty()) {
+    throw py::type_error("out: expected a writable array of float64, " + why_not);
   }
   Array array = py::reinterpret_borrow<Array>(out);
   if (!std::ranges::equal(std::span(array.shape(), static_cast<std::size_t>(array.ndim())), shape)) {

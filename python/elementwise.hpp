@@ -121,9 +121,9 @@ class Elementwise {
   }
 
   /// Evaluates all elements, once. Many are evaluated without the interpreter's lock, until a signal's handler raises.
-  /// @param out  array that receives the values; None: a new one does
-  /// @return `out`; without it a float if no argument has a dimension, or else the new array
-  /// @throws py::type_error if `out` is no writable array of float64
+  /// @param out  array that receives the values, or None
+  /// @return `out`; for None a float if no argument has a dimension, or else a new array
+  /// @throws py::type_error if `out` is no writable array of float64, or is masked
   /// @throws std::invalid_argument if `out` has another shape than the result
   [[nodiscard]] py::object into(const py::object& out);
 

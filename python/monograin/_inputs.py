@@ -1,4 +1,4 @@
-"""What callers hand in: names, arrays of numbers, and arguments of the right type."""
+"""Input of callers: names, arrays of numbers, and arguments of the right type."""
 
 from __future__ import annotations
 

@@ -82,14 +82,47 @@ def test_the_array_for_the_result_may_share_memory_with_arguments():
 def test_an_array_that_cannot_hold_the_result_is_refused():
     locked = np.empty(3)
     locked.flags.writeable = False
-    for wrong in ([0.0] * 3, np.empty(3, dtype=int), np.empty(3, dtype=np.float32), locked, 1.0):
-        with pytest.raises(TypeError, match="^out: expected "):
+    for wrong, problem in (
+        ([0.0] * 3, r"not \[0.0, 0.0, 0.0\]$"),
+        (np.empty(3, dtype=int), "not one of int64$"),
+        (np.empty(3, dtype=np.float32), "not one of float32$"),
+        (np.empty(3, dtype=">f8"), "not one of >f8, whose byte order is not that of the machine$"),
+        (locked, "but this one is read-only$"),
+        (1.0, "not 1.0$"),
+    ):
+        with pytest.raises(TypeError, match=f"^out: expected a writable array of float64, {problem}"):
             laws.hertz.force(1e9, 0.01, [1e-4] * 3, out=wrong)
     for wrong, shape in ((np.empty(4), r"\(4,\)"), (np.empty((1, 3)), r"\(1, 3\)"), (np.empty(()), r"\(\)")):
         with pytest.raises(ValueError, match=rf"^out: its shape is {shape}; expected that of the result, \(3,\)"):
             laws.hertz.force(1e9, 0.01, [1e-4] * 3, out=wrong)
     with pytest.raises(TypeError, match="^modulus: expected real numbers"):
         laws.hertz.force("x", 0.01, 1e-4, out=np.empty(()))
+
+
+@pytest.mark.parametrize("step", [1, 2])
+@pytest.mark.parametrize("hard", [False, True])
+def test_a_masked_array_for_the_result_is_refused_and_its_values_are_not(step, hard):
+    out = np.ma.masked_array(np.full(3 * step, 7.0), mask=[True] + [False] * (3 * step - 1), hard_mask=hard)[::step]
+    with pytest.raises(TypeError, match=r"^out: .* not a masked one; hand in its values, out\.data"):
+        laws.hertz.force(1e9, 0.01, [1e-4] * 3, out=out)
+    assert_array_equal(out.data, [7.0] * 3)
+    laws.hertz.force(1e9, 0.01, [1e-4] * 3, out=out.data)
+    assert_array_equal(out.data, laws.hertz.force(1e9, 0.01, [1e-4] * 3))
+    assert out.mask.tolist() == [True, False, False]
+
+
+def test_an_error_leaves_elements_of_the_result_as_they_were_or_evaluates_them():
+    radius = [0.01, 0.02, -1.0, 0.04]
+    expected = laws.hertz.force(1e9, np.abs(radius), 1e-4)
+    out = np.full(4, 7.0)
+    with pytest.raises(ValueError, match="radius = -1: expected above 0"):
+        laws.hertz.force(1e9, radius, 1e-4, out=out)
+    assert all(out[k] in (7.0, expected[k]) for k in range(4)), out
+    assert out[2:].tolist() == [7.0, 7.0]
+    every_other = np.full(8, 7.0)
+    with pytest.raises(ValueError, match="radius = -1: expected above 0"):
+        laws.hertz.force(1e9, radius, 1e-4, out=every_other[::2])
+    assert_array_equal(every_other, np.full(8, 7.0))
 
 
 def test_without_contact_nothing_acts():
