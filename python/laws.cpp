@@ -192,17 +192,6 @@ py::tuple ludwik_power_law(double youngs_modulus, double yield_stress, double st
 
 // --- one contact of model cel, on an undeformed core
 
-/// Quantity of a contact on a dent, in SI units.
-/// @param quantity  overlap (plastic indentation and local elastic displacement), force, contact_radius or
-/// mean_pressure
-double cel_quantity(const std::string& quantity, const cel::Dent& dent, const cel::Contact& contact,
-                    double youngs_modulus, double radius) {
-  if (quantity == "overlap") return (dent.h + contact.u) * radius;
-  if (quantity == "force") return contact.F * youngs_modulus * radius * radius;
-  if (quantity == "contact_radius") return std::sqrt(contact.area) * radius;
-  return contact.F * youngs_modulus / (std::numbers::pi * contact.area);
-}
-
 /// Makes a function of (E, nu, Y, R0, numbers...) from a function of (cel::Material, E, R0, numbers...). It refuses
 /// inadmissible parameters, and is NaN if one of its arguments is.
 template <class Function>
@@ -223,16 +212,29 @@ cel::Dent cel_dent(const cel::Material& material, double largest) {
   return cel::dent_of(material, std::max(largest, material.a_Y));
 }
 
-/// Onset of yield, or the plastic indentation below a dent.
-/// @param largest  largest contact radius [m]; it does not matter at yield
-Elementwise cel_dent_quantity(const std::string& quantity, const Numbers& youngs_modulus, const Numbers& poisson_ratio,
-                              const Numbers& yield_stress, const Numbers& radius, const Numbers& largest) {
-  return Elementwise(with_cel_material([=](const cel::Material& material, double, double r, double a) {
-                       if (quantity == "yield_radius") return material.a_Y * r;
-                       if (quantity == "yield_overlap") return material.a_Y * material.a_Y * r;
+/// Onset of yield.
+/// @param quantity  contact_radius or overlap
+Elementwise cel_yield(const std::string& quantity, const Numbers& youngs_modulus, const Numbers& poisson_ratio,
+                      const Numbers& yield_stress, const Numbers& radius) {
+  return Elementwise(with_cel_material([=](const cel::Material& material, double, double r) {
+                       return quantity == "overlap" ? material.a_Y * material.a_Y * r : material.a_Y * r;
+                     }),
+                     youngs_modulus, poisson_ratio, yield_stress, radius);
+}
+
+/// Plastic indentation below a dent.
+Elementwise cel_indentation(const Numbers& youngs_modulus, const Numbers& poisson_ratio, const Numbers& yield_stress,
+                            const Numbers& radius, const Numbers& largest) {
+  return Elementwise(with_cel_material([](const cel::Material& material, double, double r, double a) {
                        return a <= r ? cel_dent(material, a / r).h * r : k_nan;
                      }),
                      youngs_modulus, poisson_ratio, yield_stress, radius, largest);
+}
+
+/// Overlap over R0 at which a contact on a dent flows, where its force is the limit.
+/// @param contact  on the dent, at any overlap
+double cel_limit_overlap(const cel::Material& material, const cel::Dent& dent, const cel::Contact& contact) {
+  return dent.h + contact.H / (2.0 * material.Es * std::sqrt(contact.alpha) * (1.0 - dent.q));
 }
 
 /// First loading up to a contact radius.
@@ -243,13 +245,17 @@ Elementwise cel_loading(const std::string& quantity, const Numbers& youngs_modul
                        if (a <= 0.0) return 0.0;
                        if (a > r) return k_nan;
                        const double zeta = a / r;
-                       const cel::Dent dent = cel_dent(material, zeta);
-                       // Before yield the contact is Hertz's, u = a^2; afterwards its force is the limit.
-                       const double limit = cel::contact_at(material, dent, 1.0, 1.0, 0.0).H;
-                       const cel::Contact contact = zeta < material.a_Y
-                                                        ? cel::contact_at(material, dent, 1.0, 1.0, zeta * zeta)
-                                                        : cel::contact_under(material, dent, 1.0, 1.0, limit);
-                       return cel_quantity(quantity, dent, contact, e, r);
+                       // Before yield the contact is Hertz's; afterwards its force is the limit.
+                       double overlap = zeta * zeta;
+                       double pressure = 4.0 * material.Es * zeta / (3.0 * std::numbers::pi);
+                       if (zeta >= material.a_Y) {
+                         const cel::Dent dent = cel::dent_of(material, zeta);
+                         const cel::Contact open = cel::contact_at(material, dent, 1.0, 1.0, 0.0);
+                         overlap = cel_limit_overlap(material, dent, open);
+                         pressure = open.H / (std::numbers::pi * open.alpha);
+                       }
+                       if (quantity == "overlap") return overlap * r;
+                       return quantity == "force" ? pressure * e * std::numbers::pi * a * a : pressure * e;
                      }),
                      youngs_modulus, poisson_ratio, yield_stress, radius, contact_radius);
 }
@@ -263,9 +269,9 @@ Elementwise cel_unloading(const std::string& quantity, const Numbers& youngs_mod
                        if (a > r) return k_nan;
                        const cel::Dent dent = cel_dent(material, a / r);
                        const cel::Contact contact = cel::contact_at(material, dent, 1.0, 1.0, delta / r - dent.h);
-                       const double limit = cel::contact_under(material, dent, 1.0, 1.0, contact.H).u + dent.h;
+                       const double limit = cel_limit_overlap(material, dent, contact);
                        if (delta > limit * r * (1.0 + k_same_value)) return k_nan;
-                       return cel_quantity(quantity, dent, contact, e, r);
+                       return quantity == "force" ? contact.F * e * r * r : std::sqrt(contact.area) * r;
                      }),
                      youngs_modulus, poisson_ratio, yield_stress, radius, largest, overlap);
 }
@@ -466,7 +472,8 @@ void add_mdr(py::module_& laws) {
 }
 
 void add_plastic(py::module_& laws) {
-  laws.def("cel_dent", &cel_dent_quantity);
+  laws.def("cel_yield", &cel_yield);
+  laws.def("cel_indentation", &cel_indentation);
   laws.def("cel_loading", &cel_loading);
   laws.def("cel_unloading", &cel_unloading);
   laws.def("semimech", &semimech);

@@ -200,8 +200,16 @@ class laws:
     @staticmethod
     def mdr_power_profile_3d(coefficient: ArrayLike, exponent: ArrayLike, r: ArrayLike, /) -> Elementwise: ...
     @staticmethod
-    def cel_dent(
+    def cel_yield(
         quantity: str,
+        youngs_modulus: ArrayLike,
+        poisson_ratio: ArrayLike,
+        yield_stress: ArrayLike,
+        radius: ArrayLike,
+        /,
+    ) -> Elementwise: ...
+    @staticmethod
+    def cel_indentation(
         youngs_modulus: ArrayLike,
         poisson_ratio: ArrayLike,
         yield_stress: ArrayLike,

@@ -476,6 +476,8 @@ def test_a_contact_of_cel_is_hertzs_up_to_yield():
     assert_allclose(laws.cel.unloading_force(*CEL, radius[-1], overlap), expected, rtol=1e-13)
     assert_allclose(laws.cel.unloading_contact_radius(*CEL, radius[-1], overlap), radius, rtol=1e-13)
     assert laws.cel.indentation(*CEL, radius[-1]) == pytest.approx(0.0, abs=1e-20)
+    tiny = laws.cel.mean_pressure(*CEL, 1e-160)
+    assert tiny == pytest.approx(1e-155 * laws.cel.mean_pressure(*CEL, 1e-5), rel=1e-12)
 
 
 def test_a_dent_of_cel_unloads_from_the_end_of_loading_to_its_indentation():
