@@ -19,8 +19,8 @@ Result = Union[float, NDArray[np.float64]]
 Output = Optional[NDArray[np.float64]]
 
 _OUT = """
-    out: writable array of float64 with the shape of the result; it receives the result, and is returned. None: a new
-        array. An error, or Ctrl-C, may leave it partly written.
+    out: writable array of float64 with the shape of the result, and without a mask; it receives the result, and is
+        returned. None: a new array. An error, or Ctrl-C, may leave it partly written.
 """
 
 
