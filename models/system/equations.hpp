@@ -1,8 +1,9 @@
 /// Equations of a model: unknowns that follow an ODE or a DAE in the present regime, and the forms in which a system
 /// gives them to integrators.
 ///
-/// Time. All laws are rate independent, and a system knows no seconds. Within one step of the program its independent
-/// variable is the step coordinate xi, from 0 at the start of the step to 1 at its end. The scene converts xi to time.
+/// Time. All laws are rate independent, and a system knows no seconds. Within one leg of the program (in most cases a
+/// whole step) its independent variable is the step coordinate xi, from 0 at the start of the leg to 1 at its end. The
+/// scene converts xi to time.
 ///
 /// Unknowns. One array y holds all unknowns, dimensionless and of order one: first the differential ones, then the
 /// quadratures (their rates depend on the others, nothing depends on them), then the algebraic ones. A system has three

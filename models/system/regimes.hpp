@@ -65,9 +65,9 @@ class Regimes {
   /// Sets y to the state before the first step.
   virtual void start(std::span<double> y) = 0;
 
-  /// Begins the next step of the program, resolves the mode at its start, and logs the events that happen there.
+  /// Begins the next leg of the program, resolves the mode at its start, and logs the events that happen there.
   /// @param ramps  one for each channel of the scene; with walls, one for each contact class
-  /// @throws CannotBegin if the system meets a limit at the start of the step
+  /// @throws CannotBegin if the system meets a limit at the start of the leg
   virtual void begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) = 0;
 
   /// Returns a function that restores the present mode and memory of the system, for use after a rehearsed step. The

@@ -27,7 +27,7 @@ constexpr double k_safety = 0.85;
 constexpr double k_growth_at_kinks = 1.1;
 // Least tolerance of a piece's series, over the work.
 constexpr double k_round_off_of_work = 1e-16;
-// A step of at least so many rows takes their work from series, if its closed form is costly.
+// A leg of at least so many rows takes their work from series, if its closed form is costly.
 constexpr std::size_t k_many_rows = 50;
 
 class Direct final : public EventLocator {
@@ -313,7 +313,7 @@ class Direct final : public EventLocator {
   }
 
   /// Greatest length of a piece. Guards are evaluated at its nodes; if all are monotone and nothing is integrated, a
-  /// piece may be the whole step.
+  /// piece may be the whole leg.
   [[nodiscard]] double longest() const noexcept {
     constexpr double k_longest_per_node = 1.0 / 24.0;
     return is_closed_ && guard_set_.is_monotone() ? 1.0 : k_longest_per_node * static_cast<double>(nodes_->count);

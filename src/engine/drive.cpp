@@ -205,16 +205,17 @@ class Drive {
     const std::size_t logged = log.size();
     system_.begin_step(plan_.ramps, y_, log);
     with_sensitivities(
-        [&](ForwardSensitivities& s) { s.begin_step(clock_.leg, plan_, std::span(log).subspan(logged)); });
+        [&](ForwardSensitivities& s) { s.begin_leg(clock_.leg, plan_, std::span(log).subspan(logged)); });
   }
 
   /// Runs the leg that has begun; leaves xi_ and y_ where it ends. Returns whether a condition ended it.
   /// @param log  events at its beginning; one of them may be the event that ends the step
   bool run_leg(const std::vector<Event>& log) {
     xi_ = 0.0;
-    guard_set_.begin_step(plan_.conditions, 0.0, y_);
+    guard_set_.begin_leg(plan_.conditions, 0.0, y_);
     demands_.begin_leg(plan_, clock_);
-    with_sensitivities([this](ForwardSensitivities& s) { s.expect_held(guard_set_.met_at_begin().has_value()); });
+    with_sensitivities(
+        [this](ForwardSensitivities& s) { s.expect_met_at_begin(guard_set_.met_at_begin().has_value()); });
     rows_.begin_leg();
     if (const auto met = guard_set_.met_at_begin()) {
       demands_.note_met_at_begin(plan_.conditions[*met], clock_);
@@ -272,7 +273,7 @@ class Drive {
     resting_ramps_ = resting_ramps;
     y_ = state;
     event_count_ = event_count;
-    guard_set_.begin_step(plan_.conditions, 0.0, y_);
+    guard_set_.begin_leg(plan_.conditions, 0.0, y_);
     return result;
   }
 
@@ -283,7 +284,7 @@ class Drive {
       rest_where_reached(false);
       std::vector<Event> log;
       begin_leg(clock_.leg + 1, log);
-      guard_set_.begin_step(plan_.conditions, 0.0, y_);
+      guard_set_.begin_leg(plan_.conditions, 0.0, y_);
       is_met = guard_set_.met_at_begin() || has_ending_event(log) || cover_leg();
     }
   }
@@ -306,7 +307,7 @@ class Drive {
     }
     const bool is_solved = solve_remainder();
     xi_ = 1.0;
-    with_sensitivities([&](ForwardSensitivities& s) { s.end_step(y_, is_solved); });
+    with_sensitivities([&](ForwardSensitivities& s) { s.end_leg(y_, is_solved); });
     guard_set_.note_met({}, xi_, y_);
     return guard_set_.is_met(xi_, y_);
   }

@@ -46,7 +46,7 @@ struct DriveResult {
 /// @param integrator     one of integrator_names(), or IntegratorChoice::used of choose_integrator()
 /// @param output         output points of every step, or instants of the whole run
 /// @param sensitivities  derivatives of this scene, for an integrator that has_forward_sensitivities(); null: none
-/// @return the status tells limits of the model and failures of the integrator; these do not throw
+/// @return limits of the model and failures of the integrator are in the status; they do not throw
 /// @throws LostSensitivities where the derivatives cannot be carried on
 [[nodiscard]] DriveResult drive(Scene& scene, std::string_view integrator, const Tolerances& tolerances,
                                 const Output& output, HistorySink& sink, ForwardSensitivities* sensitivities = nullptr);

@@ -11,7 +11,7 @@
 namespace monograin {
 
 /// Base of integrators that locate events between evaluations of the guards. The integrator evaluates the guards at the
-/// ends of a piece and inside it, at most about 1/16 of a step of the program apart unless all guards are monotone. A
+/// ends of a piece and inside it, at most about 1/16 of a leg of the program apart unless all guards are monotone. A
 /// guard is taken to cross zero at most once between two evaluations. To find one that crosses and returns, the guards
 /// are also evaluated at the extremum of the parabola through three values, and at points that approach the end of a
 /// branch.

@@ -50,7 +50,7 @@ struct ForwardSensitivities::Side {
   Scene scene;
   double sign = 1.0;  ///< -1: lower neighbour, +1: upper neighbour
   GuardSet guard_set;
-  std::vector<Ramp> held{};
+  std::vector<Ramp> resting_ramps{};
   StepPlan plan{};
   StepClock clock;
   double xi = 0.0;
@@ -68,7 +68,7 @@ struct ForwardSensitivities::Side {
         guard_set(*scene.system),
         y(scene.system->unknowns().size()),
         rates(y.size()) {
-    for (const Channel& channel : scene.channels) held.push_back(channel.at_rest);
+    for (const Channel& channel : scene.channels) resting_ramps.push_back(channel.at_rest);
     const auto unknowns = scene.system->unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end()) quadrature = static_cast<std::size_t>(found - unknowns.begin());
@@ -342,20 +342,20 @@ void ForwardSensitivities::start() {
   is_placed_ = true;
 }
 
-void ForwardSensitivities::begin_step(std::size_t step, const StepPlan& plan, std::span<const Event> log) {
+void ForwardSensitivities::begin_leg(std::size_t leg, const StepPlan& plan, std::span<const Event> log) {
   each_side([&](Number&, Side& side) {
-    if (step > 0) {
-      for (std::size_t c = 0; c < side.held.size(); ++c) {
-        side.held[c] = ramp_after(side.plan, side.system(), static_cast<int>(c), side.xi, plan.leg.is_first());
+    if (leg > 0) {
+      for (std::size_t c = 0; c < side.resting_ramps.size(); ++c) {
+        side.resting_ramps[c] = ramp_after(side.plan, side.system(), static_cast<int>(c), side.xi, plan.leg.is_first());
       }
     }
-    side.plan = plan_leg(side.scene, step, side.held, side.guard_set, side.xi, side.y);
-    side.clock = side.clock.next(side.xi, step, side.plan.leg, side.plan.duration);
+    side.plan = plan_leg(side.scene, leg, side.resting_ramps, side.guard_set, side.xi, side.y);
+    side.clock = side.clock.next(side.xi, leg, side.plan.leg, side.plan.duration);
     side.xi = 0.0;
     std::vector<Event> of_side;
     side.system().begin_step(side.plan.ramps, side.y, of_side);
     side.expect_same_guards(base_, log, of_side);
-    side.guard_set.begin_step(side.plan.conditions, 0.0, side.y);
+    side.guard_set.begin_leg(side.plan.conditions, 0.0, side.y);
     if ((side.plan.duration > 0.0) != (plan.duration > 0.0)) {
       throw LostSensitivities("a step takes no time in one of the neighbouring runs");
     }
@@ -365,9 +365,9 @@ void ForwardSensitivities::begin_step(std::size_t step, const StepPlan& plan, st
   resume();
 }
 
-void ForwardSensitivities::expect_held(bool is_held) {
-  each_side([is_held](Number&, Side& side) {
-    if (side.guard_set.met_at_begin().has_value() == is_held) return;
+void ForwardSensitivities::expect_met_at_begin(bool is_met) {
+  each_side([is_met](Number&, Side& side) {
+    if (side.guard_set.met_at_begin().has_value() == is_met) return;
     throw LostSensitivities("a condition that ends a step holds where it begins, in one of the neighbouring runs only");
   });
 }
@@ -452,7 +452,7 @@ void ForwardSensitivities::end_event(std::span<const std::size_t> fired, double 
   resume();
 }
 
-void ForwardSensitivities::end_step(std::span<const double> y, bool is_solved) {
+void ForwardSensitivities::end_leg(std::span<const double> y, bool is_solved) {
   beside([&] {
     for (Number& number : numbers_) {
       if (!is_placed_) place(number, 1.0, y);

@@ -96,10 +96,10 @@ class ForwardSensitivities {
 
   void set_active(bool is_active) noexcept { is_active_ = is_active; }
   void start();
-  /// The base has begun a step of the program. @param log  events of the base at its beginning
-  void begin_step(std::size_t step, const StepPlan& plan, std::span<const Event> log);
-  /// The base has evaluated its conditions where the step begins. @param is_held  one of them holds there
-  void expect_held(bool is_held);
+  /// The base has begun a leg of the program. @param log  events of the base at its beginning
+  void begin_leg(std::size_t leg, const StepPlan& plan, std::span<const Event> log);
+  /// The base has evaluated its conditions where the leg begins. @param is_met  one of them is met there
+  void expect_met_at_begin(bool is_met);
   /// The base has been taken past a singularity, to xi.
   void leave_singularity(double xi);
   /// True if the segment that begins may lead to the end of a branch of solutions.
@@ -119,8 +119,8 @@ class ForwardSensitivities {
   void solve();
   /// The event is over. @param is_met  a condition has ended the step
   void end_event(std::span<const std::size_t> fired, double xi, bool is_met);
-  /// The step ends at xi = 1. @param is_solved  a remainder of the size of round-off was solved for
-  void end_step(std::span<const double> y, bool is_solved);
+  /// The leg ends at xi = 1. @param is_solved  a remainder of the size of round-off was solved for
+  void end_leg(std::span<const double> y, bool is_solved);
 
   // --- rows: for each number d(time)/dp and the derivative of every observable that has no words; after them, in the
   // same order, the error that round-off of the instant makes in each derivative: 0 between events

@@ -18,49 +18,48 @@ bool crosses(int direction, double before, double after, double tolerance) noexc
   return (rises && direction >= 0) || (falls && direction <= 0);
 }
 
-void GuardSet::begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y) {
-  std::swap(conditions_, of_last_step_);
+void GuardSet::begin_leg(std::span<const Condition> conditions, double xi, std::span<const double> y) {
+  std::swap(conditions_, of_last_leg_);
   conditions_.clear();
   for (const Condition& condition : conditions) {
     const double begin = value(condition, xi, y);
     const double distance = begin - condition.target;
     const double scale = std::max(std::abs(condition.target), std::abs(distance));
-    conditions_.push_back(
-        {.condition = condition,
-         .begin = begin,
-         .scale = scale > 0.0 ? scale : 1.0,
-         .direction = distance < 0.0 ? 1 : -1,
-         .is_met_at_begin = equals_target(begin, condition.target) || has_ended_last_step(condition)});
+    conditions_.push_back({.condition = condition,
+                           .begin = begin,
+                           .scale = scale > 0.0 ? scale : 1.0,
+                           .direction = distance < 0.0 ? 1 : -1,
+                           .is_met_at_begin = equals_target(begin, condition.target) || has_ended_last_leg(condition)});
   }
   renew();
 }
 
-bool GuardSet::has_ended_last_step(const Condition& condition) const {
+bool GuardSet::has_ended_last_leg(const Condition& condition) const {
   return std::ranges::any_of(
-      of_last_step_, [&](const Watched& watched) { return watched.has_ended && watched.condition == condition; });
+      of_last_leg_, [&](const ConditionState& state) { return state.has_ended && state.condition == condition; });
 }
 
 std::optional<std::size_t> GuardSet::met_at_begin() const noexcept {
-  const auto held = std::ranges::find_if(conditions_, &Watched::is_met_at_begin);
-  if (held == conditions_.end()) return std::nullopt;
-  return static_cast<std::size_t>(held - conditions_.begin());
+  const auto met = std::ranges::find_if(conditions_, &ConditionState::is_met_at_begin);
+  if (met == conditions_.end()) return std::nullopt;
+  return static_cast<std::size_t>(met - conditions_.begin());
 }
 
 void GuardSet::note_met(std::span<const std::size_t> fired, double xi, std::span<const double> y) {
   for (const std::size_t guard : fired) {
     if (guard >= system_count_) conditions_[rooted_[guard - system_count_]].has_ended = true;
   }
-  for (Watched& watched : conditions_) {
-    watched.has_ended = watched.has_ended || equals_target(value(watched.condition, xi, y), watched.condition.target);
+  for (ConditionState& state : conditions_) {
+    state.has_ended = state.has_ended || equals_target(value(state.condition, xi, y), state.condition.target);
   }
 }
 
 bool GuardSet::has_ended_at(Control control, int channel, double value) const noexcept {
-  return std::ranges::any_of(conditions_, [&](const Watched& watched) {
-    const Condition& condition = watched.condition;
+  return std::ranges::any_of(conditions_, [&](const ConditionState& state) {
+    const Condition& condition = state.condition;
     const bool is_prescribed = (control == Control::force && condition.quantity == Quantity::force) ||
                                (control == Control::displacement && condition.quantity == Quantity::displacement);
-    return watched.has_ended && is_prescribed && condition.channel == channel && equals_target(value, condition.target);
+    return state.has_ended && is_prescribed && condition.channel == channel && equals_target(value, condition.target);
   });
 }
 
@@ -101,8 +100,8 @@ double GuardSet::value(const Condition& condition, double xi, std::span<const do
   return system_.quantity(condition.quantity, condition.channel, xi, y);
 }
 
-double GuardSet::excess(const Watched& watched, double xi, std::span<const double> y) {
-  return (value(watched.condition, xi, y) - watched.condition.target) / watched.scale;
+double GuardSet::excess(const ConditionState& state, double xi, std::span<const double> y) {
+  return (value(state.condition, xi, y) - state.condition.target) / state.scale;
 }
 
 void GuardSet::values(double xi, std::span<const double> y, std::span<double> out) {
@@ -111,10 +110,10 @@ void GuardSet::values(double xi, std::span<const double> y, std::span<double> ou
 }
 
 bool GuardSet::is_met(double xi, std::span<const double> y) {
-  return std::ranges::any_of(conditions_, [&](const Watched& watched) {
-    const double now = value(watched.condition, xi, y);
-    const double target = watched.condition.target;
-    return watched.direction * (now - target) >= 0.0 || equals_target(now, target);
+  return std::ranges::any_of(conditions_, [&](const ConditionState& state) {
+    const double now = value(state.condition, xi, y);
+    const double target = state.condition.target;
+    return state.direction * (now - target) >= 0.0 || equals_target(now, target);
   });
 }
 

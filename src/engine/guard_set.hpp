@@ -36,22 +36,22 @@ class GuardSet {
  public:
   explicit GuardSet(HybridSystem& system) : system_(system) {}
 
-  /// Takes up the conditions of a step. The state at its beginning shows on which side of its target each one starts.
-  void begin_step(std::span<const Condition> conditions, double xi, std::span<const double> y);
+  /// Takes up the conditions of a leg. The state at its beginning shows on which side of its target each one starts.
+  void begin_leg(std::span<const Condition> conditions, double xi, std::span<const double> y);
 
-  /// Index of the first condition that holds where the step began: its quantity equals its target there, or the step
-  /// before has ended by it. None if none holds.
+  /// Index of the first condition that was met where the leg began: its quantity equals its target there, or the leg
+  /// before has ended by it. None if none was.
   [[nodiscard]] std::optional<std::size_t> met_at_begin() const noexcept;
 
   /// Notes which conditions end the step: those among the guards that fired, and those whose quantities equal their
-  /// targets. A condition that a jump has passed ends the step as well, but does not hold where the next step begins.
+  /// targets. A condition that a jump has passed ends the step as well, but is not met where the next one begins.
   void note_met(std::span<const std::size_t> fired, double xi, std::span<const double> y);
 
   /// True if a condition has ended the last step where the quantity that a control prescribes to a channel equals a
   /// value.
   [[nodiscard]] bool has_ended_at(Control control, int channel, double value) const noexcept;
 
-  /// Value of a condition's quantity where the step began.
+  /// Value of a condition's quantity where the leg began.
   [[nodiscard]] double value_at_begin(std::size_t condition) const { return conditions_[condition].begin; }
 
   /// Lists the guards alive from here on; to be called after every change of the system's mode.
@@ -74,7 +74,7 @@ class GuardSet {
   /// Number of guards of the system; they come before the conditions of the program.
   [[nodiscard]] std::size_t system_guards() const noexcept { return system_count_; }
 
-  /// True if every guard is monotone over the rest of the step: its values at two instants show whether it crosses zero
+  /// True if every guard is monotone over the rest of the leg: its values at two instants show whether it crosses zero
   /// between them.
   [[nodiscard]] bool is_monotone() const noexcept { return is_monotone_; }
 
@@ -82,22 +82,22 @@ class GuardSet {
   [[nodiscard]] bool is_met(double xi, std::span<const double> y);
 
  private:
-  struct Watched {
+  struct ConditionState {
     Condition condition;
-    double begin = 0.0;            ///< value of the quantity where the step began
+    double begin = 0.0;            ///< value of the quantity where the leg began
     double scale = 1.0;            ///< larger of target and first distance: makes the root function of order one
     int direction = 1;             ///< direction in which the quantity reaches the target
-    bool is_met_at_begin = false;  ///< the condition held where the step began
+    bool is_met_at_begin = false;  ///< the condition was met where the leg began
     bool has_ended = false;        ///< the condition has ended the step
   };
   [[nodiscard]] double value(const Condition& condition, double xi, std::span<const double> y);
-  [[nodiscard]] double excess(const Watched& watched, double xi, std::span<const double> y);
-  [[nodiscard]] bool has_ended_last_step(const Condition& condition) const;
+  [[nodiscard]] double excess(const ConditionState& state, double xi, std::span<const double> y);
+  [[nodiscard]] bool has_ended_last_leg(const Condition& condition) const;
   [[nodiscard]] bool vanishes_with_contact(const Condition& condition) const;
 
   HybridSystem& system_;
-  std::vector<Watched> conditions_;
-  std::vector<Watched> of_last_step_;
+  std::vector<ConditionState> conditions_;
+  std::vector<ConditionState> of_last_leg_;
   std::vector<std::size_t> rooted_;  ///< conditions with a root function of their own
   std::vector<int> directions_;
   std::size_t system_count_ = 0;

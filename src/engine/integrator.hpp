@@ -71,16 +71,16 @@ class SolverError : public std::runtime_error {
 };
 
 /// Length (step coordinates) below which a step that leaves the domain of the equations has reached the domain's
-/// boundary. The length shrinks towards the beginning of a step of the program, where an overlap may be as small.
+/// boundary. The length shrinks towards the beginning of a leg of the program, where an overlap may be as small.
 [[nodiscard]] inline double least_progress(double xi) noexcept {
   constexpr double k_nearest_start = 1e-7;  // nearer to the start, the length is constant
   return k_same_instant * std::max(xi, k_nearest_start);
 }
 
-/// Internal steps of one step of the program after which it is given up.
+/// Internal steps after which a leg of the program is given up.
 inline constexpr long k_most_internal_steps = 200'000;
 
-/// Integrates one system over segments: smooth parts of a step of the program, from one restart to the next.
+/// Integrates one system over segments: smooth parts of a leg of the program, from one restart to the next.
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -114,7 +114,7 @@ class Integrator {
   /// statistics().rhs_evaluations, by which the drive bounds the work; called after every internal step.
   [[nodiscard]] virtual long rhs_evaluations() const { return statistics().rhs_evaluations; }
 
-  /// Largest number of internal steps that a step of the program may take.
+  /// Largest number of internal steps that a leg of the program may take.
   [[nodiscard]] virtual long most_steps() const noexcept { return k_most_internal_steps; }
 };
 
@@ -126,7 +126,7 @@ class Integrator {
 
 /// Makes an integrator for a system.
 /// @param name           one of integrator_names(), or IntegratorChoice::used of choose_integrator()
-/// @param rows           approximate number of rows of the history in a step of the program
+/// @param rows           approximate number of rows of the history in a leg of the program
 /// @param sensitivities  derivatives to integrate too, if the integrator has_forward_sensitivities(); null: none
 /// @throws std::logic_error for another name, or for "direct" with a system that is not solvable
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(std::string_view name, Equations& system, GuardSet& guard_set,
@@ -162,7 +162,7 @@ enum class OdeintMethod { dopri5, fehlberg78, bulirsch_stoer, rosenbrock4 };
 enum class GslMethod { rk8pd, msadams, msbdf };
 [[nodiscard]] std::unique_ptr<Integrator> make_stepped(GslMethod method, Equations& system, GuardSet& guard_set,
                                                        const Tolerances& tolerances);
-/// Forward Euler with 1/rtol steps in each step of the program, at most 1e7; transitions at the ends of steps.
+/// Forward Euler with 1/rtol steps in each leg of the program, at most 1e7; transitions at the ends of steps.
 [[nodiscard]] std::unique_ptr<Integrator> make_fixed_step(Equations& system, GuardSet& guard_set,
                                                           const Tolerances& tolerances);
 /// Odeint's dopri5, replaced by CVODE's BDF when dopri5 takes too many steps; "auto" integrates with this pair.

@@ -36,7 +36,7 @@ class OutputRows {
   /// Puts that last point where the step has ended.
   void end_leg(double xi);
 
-  /// Tells of output times beyond the end [s] of the program; nothing if there are none.
+  /// Note about output times beyond the end [s] of the program; none if there are none.
   [[nodiscard]] std::optional<std::string> note_unreached_times(double end) const;
 
   /// Nothing is written between pause() and resume().

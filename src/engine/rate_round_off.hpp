@@ -8,8 +8,8 @@
 
 namespace monograin {
 
-/// Learns the round-off of the rates from pieces whose series end in terms above the tolerance, and which are refused
-/// therefore. A later piece from the same beginning, at most half as long, shows round-off if its last terms have not
+/// Learns the round-off of the rates from pieces whose series end in terms above the tolerance, and are therefore
+/// refused. A later piece from the same beginning, at most half as long, shows round-off if its last terms have not
 /// become smaller: halving a piece multiplies them by 0.7 next to a square root (length to the power 1/2), and by 0.5
 /// next to a kink. A kink just inside the refused piece can imitate round-off, but not several times with similar
 /// terms: round-off counts as known after three such observations. Once it is known, pieces may show it: pieces short

@@ -30,7 +30,7 @@ class StepWork {
   const Integrator& integrator_;
   const GuardSet& guard_set_;
   long first_evaluation_ = 0;  ///< evaluations of the equations before the leg
-  long steps_ = 0;             ///< internal ones
+  long internal_steps_ = 0;
   int idle_steps_ = 0;
   int events_ = 0;
   int idle_events_ = 0;

@@ -168,7 +168,7 @@ TEST(Direct, StateDoesNotDependOnWhatWasAskedBefore) {
   std::vector<double> y{1.0};
   std::vector<Event> log;
   toy->begin_step({}, y, log);
-  watch.begin_step({}, 0.0, y);
+  watch.begin_leg({}, 0.0, y);
   const auto direct = make_integrator("direct", *toy, watch, {});
   direct->begin(0.0, y);
   const double end = direct->advance().xi;

@@ -26,7 +26,7 @@ class FiredGuards : public ::testing::Test {
     toy_.watched = std::move(guards);
     toy_.finish();
     GuardSet set(toy_);
-    set.begin_step(conditions, 0.0, std::vector<double>{integrator_.curve(0.0)});
+    set.begin_leg(conditions, 0.0, std::vector<double>{integrator_.curve(0.0)});
     integrator_.guards = {0};
     return fired_guards(set, integrator_, 0.4, 0.5, std::vector<double>{integrator_.curve(0.5)});
   }
@@ -60,7 +60,7 @@ TEST_F(FiredGuards, AreMarksIfAllOfThemMarkAnInstant) {
   mark.is_mark = true;
   EXPECT_EQ(fire({mark, guard_at(0.5)}), Guards{0}) << "a mark brings no other guard with it";
   GuardSet set(toy_);
-  set.begin_step({}, 0.0, std::vector<double>{0.0});
+  set.begin_leg({}, 0.0, std::vector<double>{0.0});
   EXPECT_TRUE(are_marks(set, Guards{0}));
   EXPECT_FALSE(are_marks(set, Guards{0, 1}));
   EXPECT_FALSE(are_marks(set, Guards{}));

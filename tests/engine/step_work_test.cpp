@@ -17,7 +17,7 @@ class StepWorkTest : public ::testing::Test {
   StepWorkTest() {
     toy_.watched = {{"yield", 1, [](double, ToySystem::View y) { return y[0] - 1.0; }}};
     toy_.finish();
-    guards_.begin_step({}, 0.0, std::vector<double>{0.0});
+    guards_.begin_leg({}, 0.0, std::vector<double>{0.0});
     work_.begin();
   }
   /// Repeats an action until it throws. @return how often it did not, and why it does
