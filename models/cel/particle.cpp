@@ -150,7 +150,7 @@ void Particle::evaluate_displacements() {
       if (forces_[j] != 0.0)
         lift += coupling(i, j).G(c.dent.root_Gam * classes[j].dent.root_Gam, coverage_.shade) * forces_[j];
     }
-    c.displacement = c.dent.h + c.advance.c + c.contact.u - lift - carried(i);
+    c.displacement = c.dent.h + c.advance.c + c.contact.u - lift - approach_by_centre(i);
     stored_ += c.count * (c.contact.stored - 0.5 * c.contact.F * lift);
   }
 }

@@ -110,7 +110,9 @@ class Particle {
   }
   [[nodiscard]] Core core_of(std::span<const double> y) const noexcept;
   /// n.x, by which the displacement of the centre deepens the contacts of a class.
-  [[nodiscard]] double carried(std::size_t i) const noexcept { return centre.lines().mean_normal(i).dot(x_); }
+  [[nodiscard]] double approach_by_centre(std::size_t i) const noexcept {
+    return centre.lines().mean_normal(i).dot(x_);
+  }
   /// Releases a wall: it moves with the surface and bears no force.
   void release_wall(std::size_t i, std::span<double> y);
   /// Writes the prescribed forces into a state.

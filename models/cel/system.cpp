@@ -262,7 +262,7 @@ contacts::VisibleContact System::visible(std::size_t i, double xi) const {
   const double area = std::numbers::pi * radius * radius;
   const int closed = c.flows ? k_plastic : c.dent.zeta > particle_.material().a_Y ? k_unloaded : k_elastic;
   return {.displacement = d * length_,
-          .overlap = (d + particle_.carried(i)) * length_,
+          .overlap = (d + particle_.approach_by_centre(i)) * length_,
           .force = load * force_unit_,
           .contact_radius = radius * length_,
           .pressure = area > 0.0 ? load / area * modulus_ : 0.0,

@@ -113,13 +113,13 @@ class IndependentContacts final : public HybridSystem {
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const bool is_by_force = ramps[i].control == Control::force;
       const WallDrive drive(ramps[i], is_by_force ? units_.force : units_.length);
-      begin[i] = contacts_[i].set_drive(law_, drive, left_at(i, y), classes_[i].takes_force, carried(i, y));
+      begin[i] = contacts_[i].set_drive(law_, drive, left_at(i, y), classes_[i].takes_force, approach_by_centre(i, y));
       // y takes the coordinates of this step even if the step cannot begin, so that the last row shows its start.
       if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate(law_, 0.0, begin[i]);
     }
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (followers_.follows(i) || depends_on_centre(i)) continue;
-      if (const auto end = contacts_[i].begin_step(law_, begin[i], is_seen(i), log, carried(i, y)))
+      if (const auto end = contacts_[i].begin_step(law_, begin[i], is_seen(i), log, approach_by_centre(i, y)))
         throw CannotBegin(*end);
     }
     if (centre_) centre_->begin_step(law_, contacts_, y);
@@ -223,10 +223,10 @@ class IndependentContacts final : public HybridSystem {
       std::optional<DomainEnd> end;
       if (guard.kind == k_made)
         c.make(law_, true, log);
-      else if (guard.kind == k_lost && !(depends_on_centre(i) && centre_->bears_on(law_, contacts_, i, xi, y)))
-        c.lose(law_, log, carried(i, y));
+      else if (guard.kind == k_lost && !(depends_on_centre(i) && centre_->is_still_pressed(law_, contacts_, i, xi, y)))
+        c.lose(law_, log, approach_by_centre(i, y));
       else if (guard.kind == k_retreat)
-        c.retreat(law_, approach(i, xi, y), guard.name, log, carried(i, y));
+        c.retreat(law_, approach(i, xi, y), guard.name, log, approach_by_centre(i, y));
       else if (guard.kind == k_boundary)
         end = c.pass(law_, *c.next(law_), log);
       // The next boundary may lie within the round-off of the ramp, as with the opening of a dent near the resolution:
@@ -247,7 +247,8 @@ class IndependentContacts final : public HybridSystem {
       std::ranges::for_each(approaches_, [&](double d) { law_.note(d); });
     columns_.write(
         has_energies() ? energies(y[work_slot_]) : k_no_energies, contacts_.size(),
-        [&](std::size_t i) { return visible(i, xi, approaches_[followers_.leading(i)], carried(i, y)); }, values);
+        [&](std::size_t i) { return visible(i, xi, approaches_[followers_.leading(i)], approach_by_centre(i, y)); },
+        values);
     if (centre_) write_centre_columns(centre_->in_space(y) * units_.length, values);
   }
 
@@ -256,7 +257,7 @@ class IndependentContacts final : public HybridSystem {
     const bool is_of_area = quantity == Quantity::pressure || quantity == Quantity::contact_radius;
     if (is_of_area && !k_has_contact_area<Law>) throw std::logic_error("no such quantity at a wall of this model");
     const auto i = static_cast<std::size_t>(contact_class);
-    const VisibleContact shown = visible(i, xi, approach(followers_.leading(i), xi, y), carried(i, y));
+    const VisibleContact shown = visible(i, xi, approach(followers_.leading(i), xi, y), approach_by_centre(i, y));
     return quantity_of(wall_of(shown, units_.length), quantity);
   }
   /// Present value of what a control prescribes, where a ramp begins. For an integrated displacement, gives the exact
@@ -265,8 +266,9 @@ class IndependentContacts final : public HybridSystem {
     const auto i = static_cast<std::size_t>(contact_class);
     if (control == Control::force) return quantity(Quantity::force, contact_class, xi, y);
     const double d = approach(i, xi, y);
-    if (!contacts_[i].is_integrated(law_)) return (d - carried(i, y)) * units_.length;
-    return (contacts_[i].displacement_under(law_, contacts_[i].drive().value(xi), d) - carried(i, y)) * units_.length;
+    if (!contacts_[i].is_integrated(law_)) return (d - approach_by_centre(i, y)) * units_.length;
+    return (contacts_[i].displacement_under(law_, contacts_[i].drive().value(xi), d) - approach_by_centre(i, y)) *
+           units_.length;
   }
 
   [[nodiscard]] std::vector<SurfacePoint> surface(int contact_class, double xi, std::span<const double> y) override {
@@ -332,7 +334,7 @@ class IndependentContacts final : public HybridSystem {
   /// centre towards this wall.
   [[nodiscard]] double approach(std::size_t i, double xi, std::span<const double> y) const {
     const double d = contacts_[i].displacement(law_, xi, coordinate(i, y));
-    return centre_ ? centre_->displacement(law_, contacts_[i], i, d, y) : d;
+    return centre_ ? centre_->approach(law_, contacts_[i], i, d, y) : d;
   }
 
   /// Coordinate of a contact; 0 for a class that never takes a force, and has none.
@@ -343,7 +345,7 @@ class IndependentContacts final : public HybridSystem {
   /// Displacement of a contact at the end of the last step.
   [[nodiscard]] double left_at(std::size_t i, std::span<const double> y) const {
     const double d = contacts_[i].displacement_of(law_, coordinate(i, y));
-    return depends_on_centre(i) ? d + carried(i, y) : d;
+    return depends_on_centre(i) ? d + approach_by_centre(i, y) : d;
   }
 
   /// True for a contact whose displacement depends on where a free centre is.
@@ -351,7 +353,7 @@ class IndependentContacts final : public HybridSystem {
     return centre_.has_value() && !contacts_[i].is_force_controlled();
   }
   /// By how much a free centre has moved towards the walls of a class.
-  [[nodiscard]] double carried(std::size_t i, std::span<const double> y) const {
+  [[nodiscard]] double approach_by_centre(std::size_t i, std::span<const double> y) const {
     return centre_ ? centre_->approach_by_centre(i, y) : 0.0;
   }
   /// True if touching is an event; it is none for a wall that touches the fresh particle from the start.
@@ -382,8 +384,8 @@ class IndependentContacts final : public HybridSystem {
 
   /// Numbers of a contact in a row, in SI.
   /// @param d        displacement of the contact, or of the leader that it follows
-  /// @param carried  by how much a free centre has moved towards the wall
-  [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d, double carried) {
+  /// @param approach_by_centre  by how much a free centre has moved towards the wall
+  [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d, double approach_by_centre) {
     const Contact& c = contacts_[i];
     if (followers_.follows(i)) {
       VisibleContact shown = visible_follower(law_, contacts_[followers_.leader()], d);
@@ -391,7 +393,7 @@ class IndependentContacts final : public HybridSystem {
       return units_.in_si(shown);
     }
     VisibleContact shown = visible_contact(law_, c, xi, d);
-    shown.displacement = shown.overlap - carried;
+    shown.displacement = shown.overlap - approach_by_centre;
     return units_.in_si(shown);
   }
 

@@ -97,7 +97,7 @@ class LawCheck {
   const Law& law_;
 };
 
-/// Looks for functions of a law that do not belong together, on the branch of a fresh contact and where it unloads.
+/// Finds functions of a law that do not belong together, on the branch of a fresh contact and where it unloads.
 /// Displacements at which the law has ended do not count.
 /// @param reach  largest displacement, over R0; 0 or infinite: unknown
 /// @return the first contradiction found, a sentence; empty if there is none

@@ -11,7 +11,7 @@
 namespace monograin::contacts {
 
 /// Finds on which side a contact is at the first trial instant ahead at which it is clearly open or closed.
-/// @param xi     step coordinate from which on the contact is watched
+/// @param xi     step coordinate at which the search begins
 /// @param touch  least magnitude that puts the contact on a side
 /// @param at     step coordinate -> coordinate of the contact; throws std::domain_error where there is no state
 /// @return its coordinate there; 0 if it stays undecided to the end of the step; none if no state exists ahead

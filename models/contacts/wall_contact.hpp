@@ -187,16 +187,17 @@ class WallContact {
   /// where it is, a wall at its dent is not pressed in again, and a ramp between two equal values lets the wall rest.
   /// @param left_at      displacement of the contact at the end of the last step; used if the ramp is one of force
   /// @param takes_force  false: no force has ever moved the wall
-  /// @param carried      by how much a free centre has moved towards the wall
+  /// @param approach_by_centre  by how much a free centre has moved towards the wall
   /// @return displacement of the contact
-  double set_drive(const Law& law, WallDrive drive, double left_at, bool takes_force, double carried) {
+  double set_drive(const Law& law, WallDrive drive, double left_at, bool takes_force, double approach_by_centre) {
     const bool is_by_force = drive.is_force_controlled();
     if (drive_.direction() == 0 && is_force_controlled() == is_by_force) drive.start_at(drive_.end());
     if (!touches_ && !is_by_force) {
       const double opening = law.opening(branch_);
-      if (std::abs(drive.start() + carried - opening) <= k_most_round_off * opening) drive.start_at(opening - carried);
+      if (std::abs(drive.start() + approach_by_centre - opening) <= k_most_round_off * opening)
+        drive.start_at(opening - approach_by_centre);
     }
-    const double d = is_by_force ? left_at : drive.start() + carried;
+    const double d = is_by_force ? left_at : drive.start() + approach_by_centre;
     double size = drive.size();
     if (touches_ && takes_force && d > law.opening(branch_)) size += size_of_reached(law, d, is_by_force);
     if (std::abs(drive.rate()) <= k_most_round_off * size) drive.rest();
@@ -208,26 +209,27 @@ class WallContact {
 
   /// Decides the branch at the start of a step, where the wall is at d.
   /// @param is_seen  true: a contact that is made then is an event
-  /// @param carried  by how much a free centre has moved towards the wall
-  std::optional<DomainEnd> begin_step(Law& law, double d, bool is_seen, std::vector<Event>& log, double carried) {
+  /// @param approach_by_centre  by how much a free centre has moved towards the wall
+  std::optional<DomainEnd> begin_step(Law& law, double d, bool is_seen, std::vector<Event>& log,
+                                      double approach_by_centre) {
     const bool goes_in = drive_.direction() > 0;
     if (!touches_) {
-      resting_ = d - carried;
+      resting_ = d - approach_by_centre;
       const bool is_pressed = is_force_controlled() && drive_.start() > 0.0;
       const bool meets = goes_in && (is_force_controlled() || d >= law.opening(branch_));
       if (is_pressed || meets) make(law, is_seen, log);
     } else if (drive_.direction() < 0) {
       // A wall that has only touched leaves no dent.
       if (is_on_primary_branch_ && d > law.opening(branch_)) turn(law, d, "load-reversal", log);
-      if (is_force_controlled() ? drive_.start() <= 0.0 : d <= law.opening(branch_)) lose(law, log, carried);
+      if (is_force_controlled() ? drive_.start() <= 0.0 : d <= law.opening(branch_)) lose(law, log, approach_by_centre);
     }
     return touches_ && goes_in ? pass_reached(law, 0.0, log) : std::nullopt;
   }
 
   /// Begins to unload at d. A wall that has only touched leaves no dent, and is lost.
-  void retreat(Law& law, double d, std::string_view event, std::vector<Event>& log, double carried) {
+  void retreat(Law& law, double d, std::string_view event, std::vector<Event>& log, double approach_by_centre) {
     if (d > law.opening(branch_)) return turn(law, d, event, log);
-    lose(law, log, carried);
+    lose(law, log, approach_by_centre);
   }
   /// Begins to unload at d.
   /// @throws DomainError for a law without unloading
@@ -246,9 +248,9 @@ class WallContact {
     touches_ = has_touched_ = true;
     if (is_seen) log.push_back({made_event(law), index_});
   }
-  void lose(Law& law, std::vector<Event>& log, double carried = 0.0) {
+  void lose(Law& law, std::vector<Event>& log, double approach_by_centre = 0.0) {
     touches_ = false;
-    resting_ = law.opening(branch_) - carried;
+    resting_ = law.opening(branch_) - approach_by_centre;
     log.push_back({"contact-lost", index_});
   }
   /// Takes the contact beyond a boundary.

@@ -308,8 +308,9 @@ double peeling_softening(const Image& image, const Adhesion& adhesion, double a)
   const double stretch_rate = 0.5 * stretch / a * radius_rate;
   const double height_slope_rate = 0.5 * indenter.height / (indenter.half_width * indenter.half_width) * radius_rate;
   const double slope_rate = height_slope_rate + 0.5 * stretch_rate * edge.cosine / a - 0.5 * stretch / a * cosine_rate;
-  const double share_rate = stretch_rate * edge.cosine + stretch * (cosine_rate - edge.cosine * slope_rate / slope);
-  return 2.0 * adhesion.composite_modulus * (radius_rate - share_rate / slope) * image.by_overlap * image.by_overlap;
+  const double lag_rate =  // of Dl cos/slope
+      (stretch_rate * edge.cosine + stretch * (cosine_rate - edge.cosine * slope_rate / slope)) / slope;
+  return 2.0 * adhesion.composite_modulus * (radius_rate - lag_rate) * image.by_overlap * image.by_overlap;
 }
 
 EdgePress edge_press(const Image& image, const Image::Change& by_radius, double a) noexcept {

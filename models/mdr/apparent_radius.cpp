@@ -11,7 +11,7 @@ constexpr double k_opposite = 5e-13;
 
 }  // namespace
 
-bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept {
+bool opens_gate(RadiusRule rule, const ContactMotion& drive) noexcept {
   // A contact whose wall keeps its distance from the centre displaces no volume.
   const bool is_idle = !drive.is_force_controlled && std::abs(drive.inward_rate) <= drive.least_rate;
   if (rule == RadiusRule::seed && !is_idle) return true;

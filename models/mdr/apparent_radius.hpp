@@ -37,7 +37,7 @@ enum class RadiusRule {
 }
 
 /// Motion of one contact that takes part in the growth.
-struct GrowthDrive {
+struct ContactMotion {
   double inward_rate = 0.0;  ///< rate of its wall, inwards positive
   double least_rate = 0.0;   ///< a smaller inward_rate is round-off
   bool is_force_controlled = false;
@@ -45,7 +45,7 @@ struct GrowthDrive {
   bool is_on_primary_branch = false;
 };
 /// True if a contact that moves in this way opens the gate for growth.
-[[nodiscard]] bool opens_gate(RadiusRule rule, const GrowthDrive& drive) noexcept;
+[[nodiscard]] bool opens_gate(RadiusRule rule, const ContactMotion& motion) noexcept;
 
 /// Part of one class of contacts in the volume balance.
 struct VolumeTerm {

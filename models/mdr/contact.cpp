@@ -332,8 +332,8 @@ double plastic_overlap(const Material& material, double radius, double force, do
   constexpr double k_shortest_overlap_step = 1e-16;
   constexpr double k_noisy_overlap_step = 1e-13;
   // At `low` the contact has no area; the force rises from there to its largest value not far below the radius, and
-  // then falls. So the ends of the bracket need not differ in sign, as bracketing root finders ask: here Newton's
-  // method gives way to bisection where the force falls.
+  // then falls. The ends of the bracket may therefore have equal signs, which bracketing root finders do not accept.
+  // Newton's method is used, with bisection where the force falls.
   double low = radius - std::sqrt(radius * radius + area_constant);
   double high = radius;
   double overlap = std::clamp(guess, low + k_inside * (radius - low), (1.0 - k_inside) * radius);

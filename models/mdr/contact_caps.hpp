@@ -52,7 +52,7 @@ class ContactCaps {
   }
 
   std::vector<CapPair> pairs_;
-  std::vector<CapAngle> angles_;          ///< a class each
+  std::vector<CapAngle> angles_;          ///< one per class
   std::vector<CapAngle> largest_angles_;  ///< of each class ahead; NaN where it has no known bound
   bool stops_ = false;
   std::optional<double> first_radius_;

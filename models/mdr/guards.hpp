@@ -25,7 +25,7 @@ enum GuardKind : int {
   k_retreat,       ///< primary_branch_rate() [fastest wall]: <= 0
 
   // Edges of adhesive contacts, and extrema of their forces.
-  k_turn,              ///< edge_rate(): changes sign, the edge stops to recede or advance
+  k_turn,              ///< edge_rate(): changes sign, the edge stops receding or advancing
   k_peel,              ///< springs at a sticking edge, distance from tearing [stretch that tears them]: <= 0
   k_follow,            ///< springs at a sticking edge, displacement [stretch that tears them]: >= 0, not stretched
   k_pull_off,          ///< delta_1D or F less that of pull-off [that of pull-off]: <= 0

@@ -479,25 +479,25 @@ bool ModeSearch::follow_snap(std::size_t i, double xi, std::span<double> y, std:
 ModeSearch::Tendency ModeSearch::tendency(std::size_t i, double xi, const Motion& now) const {
   const ContactBranch& branch = p_.branch(i);
   const bool is_by_force = p_.is_force_controlled(i);
-  const double wall_speed = wall_rate(p_, i, now);
-  const double overlap_speed = overlap_rate(p_, i, now);
+  const double rate_of_wall = wall_rate(p_, i, now);
+  const double rate_of_overlap = overlap_rate(p_, i, now);
   Tendency result;
   // At the very start of growth the rate of the radius is zero, and about to become positive.
-  result.is_pressed_by_growth = p_.mode.is_growing && !is_by_force && wall_speed >= -k_zero_guard;
-  result.moves_in = overlap_speed > k_zero_guard || result.is_pressed_by_growth;
-  const bool moves_out = overlap_speed < -k_zero_guard && !result.is_pressed_by_growth;
+  result.is_pressed_by_growth = p_.mode.is_growing && !is_by_force && rate_of_wall >= -k_zero_guard;
+  result.moves_in = rate_of_overlap > k_zero_guard || result.is_pressed_by_growth;
+  const bool moves_out = rate_of_overlap < -k_zero_guard && !result.is_pressed_by_growth;
   const bool is_shifted = p_.law().is_shifted();
-  result.retreats = !p_.mode.loads_on[i] && (is_shifted ? wall_speed < -k_zero_guard : moves_out);
-  result.advances = is_shifted ? wall_speed > k_zero_guard : result.moves_in;
+  result.retreats = !p_.mode.loads_on[i] && (is_shifted ? rate_of_wall < -k_zero_guard : moves_out);
+  result.advances = is_shifted ? rate_of_wall > k_zero_guard : result.moves_in;
   // A falling force that vanishes together with another event, within the tolerance of that, no longer presses.
   const bool is_vanishing =
       p_.drive(i).rate() < 0.0 && contact_guard(p_, k_made, i, xi, p_.contact(i).overlap) < k_together;
   result.is_pressed = is_by_force && p_.drive(i).value(xi) > 0.0 && !is_vanishing;
   // A dent opens and closes at its own depth, which changes with the radius too.
   const bool is_dent = branch.regime == Regime::unloading || branch.regime == Regime::separated;
-  const double dent_speed = is_dent && !is_by_force ? edge_rate(p_, i, now) : overlap_speed;
-  result.closes = dent_speed > k_zero_guard || result.is_pressed_by_growth;
-  result.opens = dent_speed < -k_zero_guard && !result.is_pressed_by_growth;
+  const double rate_of_dent = is_dent && !is_by_force ? edge_rate(p_, i, now) : rate_of_overlap;
+  result.closes = rate_of_dent > k_zero_guard || result.is_pressed_by_growth;
+  result.opens = rate_of_dent < -k_zero_guard && !result.is_pressed_by_growth;
   return result;
 }
 

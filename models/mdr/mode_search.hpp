@@ -94,7 +94,7 @@ class ModeSearch {
   [[nodiscard]] std::size_t most_rounds() const noexcept { return 4 * p_.size() + 8; }
 
   Particle p_;
-  // What has happened to each contact at this instant. Neither resolve() nor a restart in it clears the first and the
+  // History of each contact at this instant. Neither resolve() nor a restart in it clears the first and the
   // third; loads_again_ can thus only grow while resolve() searches.
   std::vector<bool> has_turned_;   ///< started to unload at this instant, or its edge came to rest
   std::vector<bool> loads_again_;  ///< started to unload at this instant, then loaded on beyond its largest overlap

@@ -23,8 +23,8 @@ double loaded_rate(const Particle& p, double loading, double by_radius, double g
 }  // namespace
 
 double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  const double carried = p.is_force_controlled(i) ? 0.0 : p.centre().mean_normal(i).dot(motion.centre);
-  return p.contact(i).rate_by_time + p.contact(i).rate_by_growth * motion.growth_rate + carried;
+  const double rate_by_centre = p.is_force_controlled(i) ? 0.0 : p.centre().mean_normal(i).dot(motion.centre);
+  return p.contact(i).rate_by_time + p.contact(i).rate_by_growth * motion.growth_rate + rate_by_centre;
 }
 
 double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
@@ -44,18 +44,18 @@ double primary_branch_rate(const Particle& p, std::size_t i, const Motion& motio
 
 double edge_rate(const Particle& p, std::size_t i, const Motion& motion) {
   const Instant& now = p.contact(i);
-  double overlap_speed = inward_rate(p, i, motion) + motion.growth_rate;
+  double overlap_by_xi = inward_rate(p, i, motion) + motion.growth_rate;
   // The rate of a force-controlled contact that is just being made has no bound: the sign of the force's rate decides,
   // however small that is, and growth does not count.
   const bool is_being_made = p.is_force_controlled(i) && !(now.contact.by_overlap > 0.0);
-  if (is_being_made) overlap_speed = p.drive(i).rate();
+  if (is_being_made) overlap_by_xi = p.drive(i).rate();
   if (is_being_made || motion.growth_rate == 0.0) {
     // If a free centre keeps up with the wall, the difference of their speeds is round-off, of either sign.
     const double round_off =
         p.is_force_controlled(i) ? 0.0 : k_zero_guard * (std::abs(now.rate_by_time) + motion.centre.norm());
-    return overlap_speed > round_off ? 1.0 : overlap_speed < -round_off ? -1.0 : 0.0;
+    return overlap_by_xi > round_off ? 1.0 : overlap_by_xi < -round_off ? -1.0 : 0.0;
   }
-  return p.branch(i).press_rate(p.law(), p.at().growth, now.overlap, now.contact.contact_radius, overlap_speed,
+  return p.branch(i).press_rate(p.law(), p.at().growth, now.overlap, now.contact.contact_radius, overlap_by_xi,
                                 motion.growth_rate);
 }
 
@@ -84,11 +84,11 @@ bool gate_is_open(const Particle& p, const Motion& motion) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!p.takes_part(i)) continue;
     // Next to stiff contacts the rate of an idle contact loses digits.
-    const GrowthDrive drive{.inward_rate = inward_rate(p, i, motion),
-                            .least_rate = (is_idle(p, i) ? k_at_rest : k_zero_guard) * p.walls().speed_scale(),
-                            .is_force_controlled = p.is_force_controlled(i),
-                            .rises = p.drive(i).rate() > 0.0,
-                            .is_on_primary_branch = p.branch(i).is_on_primary_branch};
+    const ContactMotion drive{.inward_rate = inward_rate(p, i, motion),
+                              .least_rate = (is_idle(p, i) ? k_at_rest : k_zero_guard) * p.walls().speed_scale(),
+                              .is_force_controlled = p.is_force_controlled(i),
+                              .rises = p.drive(i).rate() > 0.0,
+                              .is_on_primary_branch = p.branch(i).is_on_primary_branch};
     if (opens_gate(p.setup().settings.radius_rule, drive)) return true;
   }
   return false;

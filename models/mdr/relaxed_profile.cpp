@@ -89,7 +89,7 @@ double RelaxedProfile::integral(double x, Integrand&& integrand) const {
 
 // With s = r^2 and G(s) = g3D(r), r^2 = x^2 - t^2 turns the transform into g1D(x) = 2x int_0^x G'(x^2 - t^2) dt.
 
-double RelaxedProfile::image(double x) const {
+double RelaxedProfile::image_height(double x) const {
   return 2.0 * x *
          integral(x, [](const Piece& c, double d, double) { return c[1] + d * (2.0 * c[2] + d * 3.0 * c[3]); });
 }
@@ -107,13 +107,13 @@ double RelaxedProfile::image_area(double x) const {
 }
 
 double free_force(const RelaxedProfile& profile, double composite_modulus, double a) {
-  return 2.0 * composite_modulus * (a * profile.image(a) - profile.image_area(a));
+  return 2.0 * composite_modulus * (a * profile.image_height(a) - profile.image_area(a));
 }
 
 PeelState peel_state(const RelaxedProfile& profile, const Adhesion& adhesion, double a) {
   const double stretch = critical_stretch(adhesion, a);
   return {.contact_radius = a,
-          .displacement_1d = profile.image(a) - stretch,
+          .displacement_1d = profile.image_height(a) - stretch,
           .force = free_force(profile, adhesion.composite_modulus, a) - 2.0 * adhesion.composite_modulus * a * stretch};
 }
 

@@ -36,7 +36,7 @@ class RelaxedProfile {
   // The image, for x in [0, a_max]; std::domain_error outside.
 
   /// Image g1D(x) of the profile, counted from the axis (eq. 4), for x in [0, a_max].
-  [[nodiscard]] double image(double x) const;
+  [[nodiscard]] double image_height(double x) const;
   /// Slope g1D'(x) of the image, for x in [0, a_max].
   [[nodiscard]] double image_slope(double x) const;
   /// Area below the image, S(x) = int_0^x g1D, for x in [0, a_max].

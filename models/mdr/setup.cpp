@@ -39,7 +39,7 @@ Setup::Setup(const Settings& given, std::vector<ContactClass> contact_classes)
 }
 
 std::vector<Unknown> Setup::unknowns() const {
-  const double reach = largest_overlap_expected();
+  const double reach = largest_displacement_expected();
   std::vector<Unknown> list{
       {.name = "apparent radius growth (R - R0)/R0", .scale = growth_scale(reach), .is_algebraic_in_residual = true},
       {.name = "work", .kind = Unknown::Kind::quadrature, .scale = work_scale(reach)}};
@@ -63,7 +63,7 @@ std::vector<Unknown> Setup::unknowns() const {
 }
 
 /// A program may prescribe any displacement, but a contact ends where its wall has reached the centre.
-double Setup::largest_overlap_expected() const {
+double Setup::largest_displacement_expected() const {
   double reach = std::min(1.0, settings.reach.displacement / settings.initial_radius);
   const double force = settings.reach.force / force_unit();
   if (force > 0.0) {

@@ -68,7 +68,7 @@ struct Setup {
            static_cast<std::size_t>(std::ranges::count_if(classes, &ContactClass::takes_force));
   }
   /// Largest displacement that the program leads to at any wall, over R0 and at most 1; 1 where it is not known.
-  [[nodiscard]] double largest_overlap_expected() const;
+  [[nodiscard]] double largest_displacement_expected() const;
   /// Typical growth of the radius up to a displacement of the walls, both over R0.
   [[nodiscard]] double growth_scale(double displacement) const noexcept;
   /// Typical work of one wall up to a displacement over R0: the smaller one of an elastic and a fully plastic contact.

@@ -144,7 +144,7 @@ std::optional<DomainEnd> System::reach_centre_at_once(double xi, std::span<const
 
 std::optional<Difficulty> System::difficulty(double xi, std::span<const double> y) {
   // Judges the deepest contact of the whole program: every contact is below the resolution when it is made.
-  if (!(setup_->largest_overlap_expected() > k_resolution)) return Difficulty::below_resolution;
+  if (!(setup_->largest_displacement_expected() > k_resolution)) return Difficulty::below_resolution;
   if (!may_peel_off(now_.particle)) return std::nullopt;
   now_.particle.evaluate(xi, y);
   if (centre_stiffness(now_.particle).value >= k_soft_centre) return std::nullopt;

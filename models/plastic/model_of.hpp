@@ -87,7 +87,7 @@ void add_parameters(const PressureFall& fall, Configuration configuration, std::
 [[nodiscard]] Settings settings_of(const ModelInput& input, const char* strength, const Reach& reach);
 
 /// Displacement and force at which a contact meets a condition for the first time; infinity for a condition that it
-/// does not meet, or of which the law knows nothing.
+/// does not meet, or whose quantity the law does not have.
 template <class Wall>
 [[nodiscard]] Reach reach_of(const Wall& wall, double radius, const Until& until) {
   // Range of the search for the displacement that meets a condition: from this share of the limit, where pressures may
@@ -126,7 +126,8 @@ template <class Wall>
   return reach_at(first);
 }
 
-/// Fills in what follows from the contacts: equations, reach, whether a scenario unloads, and columns that may be nan.
+/// Completes a model with what follows from the contacts: equations, reach, whether a scenario unloads, and columns
+/// that may be nan.
 /// @tparam wall_law_of  function from a scenario and the reach of its program to the law of one contact
 template <auto wall_law_of>
 [[nodiscard]] Model model_of(Model model) {

@@ -35,7 +35,7 @@ inline constexpr std::array k_power_law_material{
     QuantityKey{"poisson_ratio", "Poisson's ratio, for unloading only", Dimension::none, k_poisson_to_half, {}, true},
 };
 
-/// The keys above, as far as a scenario gives them.
+/// Values of k_power_law_material that a scenario gives.
 [[nodiscard]] std::vector<DerivedParameter> power_law_parameters(const ModelInput& input);
 
 /// Objections to a scenario that unloads without elastic constants.
@@ -49,7 +49,7 @@ inline constexpr std::array k_power_law_material{
 /// Draws strength and exponent of a power law, and the elastic constants that unloading needs.
 [[nodiscard]] ProgramBounds draw_power_law(Dice& dice, DrawnMaterial& drawn, std::span<const OptionKey> options);
 
-/// Fills in what follows from the law and its material.
+/// Completes a model with what follows from the law and its material.
 /// @tparam law_of  function from a scenario to its law
 template <auto law_of>
 [[nodiscard]] Model power_law_model_of(Model model) {

@@ -209,8 +209,8 @@ contacts::Magnitudes WallLaw<Law>::magnitudes(double reach) const {
   constexpr double k_least_typical = 1e-7;
   // Share of a law's limit that sets scales: at the limit itself the pressure of an enclosed particle may be infinite.
   constexpr double k_far_from_limit = 0.9;
-  const bool is_said = settings_.reach.displacement > 0.0 || settings_.reach.force > 0.0;
-  reach = is_said ? std::min(reach, k_far_from_limit * law_.limit) : 0.5 * law_.limit;
+  const bool is_known = settings_.reach.displacement > 0.0 || settings_.reach.force > 0.0;
+  reach = is_known ? std::min(reach, k_far_from_limit * law_.limit) : 0.5 * law_.limit;
   // A yield point makes the range before it count, too.
   double first = reach;
   if (Law::first_regime == Regime::elastic && !boundaries_.empty()) first = std::min(reach, boundaries_[0].approach);

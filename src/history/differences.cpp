@@ -197,10 +197,10 @@ void Differences::refine(const RunPair& run_pair) {
 
 Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, double step, bool is_at_event,
                                const Distances& distances) const {
-  constexpr double k_as_large = 1e-3;
-  constexpr double k_counts = 1e-6;
-  constexpr double k_large = 0.1;    // derivative, over the largest one of the column
-  constexpr double k_smooth = 5e-5;  // bend, likewise; it is smaller in most smooth curves
+  constexpr double k_as_large = 1e-3;  // second difference that is round-off, over the largest value
+  constexpr double k_counts = 1e-6;    // half a bend that matters, over the largest derivative of the column
+  constexpr double k_large = 0.1;      // derivative, over the largest one of the column
+  constexpr double k_smooth = 5e-5;    // bend of a smooth curve at most, over the largest derivative of the column
   Quotient result{(of.upper - of.lower) / (2.0 * step), 0.0, noise_ * magnitudes.value / step};
   const double size = magnitudes.derivative;
   const double slope = std::abs(result.value);

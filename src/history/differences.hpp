@@ -86,9 +86,9 @@ class Differences {
   /// Largest difference of a column's derivatives on the two sides of the key's value, over the largest derivative. 0
   /// unless at least one output row in ten has a difference above 1 % that stays within 30 % in another pair of runs
   /// and is clear of its round-off.
-  /// @param of       the other pair, which may have fewer rows
-  /// @param of_step  step of the other pair
-  [[nodiscard]] double kink_in(std::size_t column, const Partnership& of, double of_step) const;
+  /// @param other       another pair, which may have fewer rows
+  /// @param other_step  its step
+  [[nodiscard]] double kink_in(std::size_t column, const Partnership& other, double other_step) const;
   /// Makes a second pair of runs if truncation is too large in some rows. Its step balances the two errors in the worst
   /// of them.
   void refine(const RunPair& run_pair);

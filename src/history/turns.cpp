@@ -11,8 +11,8 @@ namespace monograin {
 namespace {
 
 // Noise.
-constexpr std::size_t k_short_run = 2;         // longest path between two turns that may be noise, in rows
-constexpr std::size_t k_least_short_runs = 3;  // number of such paths from which on they are noise
+constexpr std::size_t k_short_path = 2;         // longest path between two turns that may be noise, in rows
+constexpr std::size_t k_least_short_paths = 3;  // number of such paths from which on they are noise
 // Median of the second differences x[k] - 2 x[k-1] + x[k-2] of normal noise, over its standard deviation: the median of
 // |normal| times the root of 1 + 4 + 1.
 constexpr double k_noise_of_median = 0.6745 * 2.449489742783178;
@@ -23,16 +23,16 @@ constexpr double k_noise_factor = 9.0;  // least turn over the noise; none of th
 constexpr double k_least_turn = 2e-3;   // least turn of few rows or among noise, over the range of x
 
 /// Lengths of the paths between two turns that may be noise, in units of x.
-[[nodiscard]] std::vector<double> short_runs_of(std::span<const double> x) {
-  std::vector<double> short_runs;
+[[nodiscard]] std::vector<double> short_paths_of(std::span<const double> x) {
+  std::vector<double> short_paths;
   std::size_t begin = 0;
   for (std::size_t k = 1; k < x.size(); ++k) {
     const bool ends = k + 1 == x.size() || (x[k + 1] - x[k]) * (x[k] - x[begin]) < 0.0;
     if (!ends) continue;
-    if (k - begin <= k_short_run && k + 1 < x.size() && begin > 0) short_runs.push_back(std::abs(x[k] - x[begin]));
+    if (k - begin <= k_short_path && k + 1 < x.size() && begin > 0) short_paths.push_back(std::abs(x[k] - x[begin]));
     begin = k;
   }
-  return short_runs;
+  return short_paths;
 }
 
 [[nodiscard]] double median_of(std::vector<double> values) {
@@ -44,15 +44,15 @@ constexpr double k_least_turn = 2e-3;   // least turn of few rows or among noise
 }  // namespace
 
 double noise_in(std::span<const double> x) {
-  const std::vector<double> short_runs = short_runs_of(x);
-  if (short_runs.size() < k_least_short_runs) return 0.0;
+  const std::vector<double> short_paths = short_paths_of(x);
+  if (short_paths.size() < k_least_short_paths) return 0.0;
   std::vector<double> differences;
   for (std::size_t k = 2; k < x.size(); ++k) differences.push_back(std::abs(x[k] - 2.0 * x[k - 1] + x[k - 2]));
   double median = median_of(std::move(differences));
   // Most of the rows of x with few digits are equal to the one before, and have no second difference.
-  const double of_short_runs = median_of(short_runs);
-  if (median < k_least_median * of_short_runs) median = of_short_runs;
-  return std::min(median / k_noise_of_median, std::ranges::max(short_runs));
+  const double of_short_paths = median_of(short_paths);
+  if (median < k_least_median * of_short_paths) median = of_short_paths;
+  return std::min(median / k_noise_of_median, std::ranges::max(short_paths));
 }
 
 namespace {
@@ -62,9 +62,9 @@ namespace {
 [[nodiscard]] double least_turn(std::span<const double> x) {
   const auto [lowest, highest] = std::ranges::minmax(x);
   const double least = k_least_turn * (highest - lowest);
-  const std::vector<double> short_runs = short_runs_of(x);
-  if (short_runs.size() >= k_least_short_runs) return std::max(least, k_noise_factor * noise_in(x));
-  const double longest = short_runs.empty() ? 0.0 : std::ranges::max(short_runs);
+  const std::vector<double> short_paths = short_paths_of(x);
+  if (short_paths.size() >= k_least_short_paths) return std::max(least, k_noise_factor * noise_in(x));
+  const double longest = short_paths.empty() ? 0.0 : std::ranges::max(short_paths);
   return std::max(k_same_number * (highest - lowest), std::min(least, longest));
 }
 
@@ -225,7 +225,7 @@ struct MeetingLines {
     const bool meet = row >= static_cast<double>(first) && row <= static_cast<double>(last);
     const double at = meet ? row : static_cast<double>(middle);
     const double x_there = 0.5 * (before.at(at) + after.at(at));
-    // Lines beside a dwell meet beyond it, but x has not been farther than the turn.
+    // Lines beside a hold below the peak meet beyond it, but x has not been farther than the turn.
     best.x = x[turn] > x[first] ? std::min(x_there, x[turn]) : std::max(x_there, x[turn]);
   }
   return best;
@@ -293,8 +293,8 @@ struct Hold {
   return by_lines - hold.squares > k_better_hold * variance ? hold : Hold{};
 }
 
-/// A turn of x with noise. Where the rows beside it are not on straight lines, as those with a dwell are not, fewer of
-/// them show where it is.
+/// A turn of x with noise. Where the rows beside it are not on straight lines, as those of a hold below the peak are
+/// not, fewer of them show where it is.
 [[nodiscard]] Turn turn_in_noise(std::span<const double> x, std::size_t begin, std::size_t extreme, std::size_t end,
                                  double noise) {
   Turn turn{.last_row = extreme, .x = x[extreme]};

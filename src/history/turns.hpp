@@ -17,7 +17,7 @@ namespace monograin {
 /// Standard deviation of the noise of x: from the median of its second differences, which a ramp does not have, but not
 /// more than the longest path of at most two rows between turns, because uneven steps have second differences, too. If
 /// most rows are equal to the one before, as those of a display with few digits are, the median of these paths takes
-/// the place of that of the differences. 0 if there are less than three such paths.
+/// the place of that of the differences. 0 if there are fewer than three such paths.
 [[nodiscard]] double noise_in(std::span<const double> x);
 
 /// Point at which x turns, or begins or ends.
@@ -31,14 +31,15 @@ struct Turn {
   [[nodiscard]] std::size_t held_rows() const noexcept { return held_end - held_begin; }
 };
 
-/// The turns of a curve whose rows are few, or have noise: the extreme row has the largest noise, and x of rows at
-/// equal times is farthest between two of them. The first and the last row have their own x.
+/// Row and x of each turn. The extreme row alone shows neither: with noise, it is the row with the largest error;
+/// without, rows at equal times miss the extreme, which lies between two of them. The first and the last row have their
+/// own x.
 ///
 /// In noise, a segmented regression of x over the row finds the turn: the two straight lines with the least sum of
 /// squared distances from all rows near the turn, which meet there. Three lines, the middle one level, replace them if
 /// x is held at the turn, which then lies at the mean of the hold. A hold has at least five rows; the F test must
-/// accept it, its slope must not be significant, and its mean must be as near to the extreme x as that of noise. Where
-/// the rows are far from such lines, half or a quarter of the path beside the turn shows where it is.
+/// accept it, its slope must not be significant, and its mean must be as near to the extreme x as noise alone would put
+/// it. Where the rows are far from such lines, half or a quarter of the path beside the turn shows where it is.
 ///
 /// Without noise, the turn is the intersection of the lines through three rows in equal steps on each side. If steps
 /// are not equal, x turns in the extreme row, and equal rows are a hold.

@@ -20,7 +20,7 @@ constexpr double k_known_within = 3.0;
 /// Relative accuracy with which models predict the depth of a contact under a force or at a condition.
 constexpr double k_same_depth = 1e-6;
 
-/// What predicts how far a program leads.
+/// Model, scenario and centre, from which the reach of a program is predicted.
 struct Predictor {
   const Model& model;
   const ModelInput& input;
@@ -101,7 +101,7 @@ std::size_t legs_run(const Predictor& predictor, const std::vector<Channel>& cha
 
 /// Upper bound of the value to which a ramp leads before a condition ends it.
 /// @param reach     that value without conditions
-/// @param is_first  the step is the first of its program
+/// @param is_first  the leg is the first of its program
 /// @param before    upper bound of the value to which the last ramp of this kind has led
 double ramp_bound(const Predictor& predictor, const Step& step, double reach, bool is_first, double before) {
   const bool is_displacement = step.kind == Step::Kind::displacement;

@@ -39,15 +39,14 @@ class CentreMode {
   // --- where the centre is
 
   [[nodiscard]] Eigen::Vector3d in_space(std::span<const double> y) const { return centre_.in_space(position(y)); }
-  /// n.x, by how much the centre has moved towards the walls of a class.
+  /// n.c, by how much the centre has moved towards the walls of a class.
   [[nodiscard]] double approach_by_centre(std::size_t i, std::span<const double> y) const {
     return centre_.approach_by_centre(i, position(y));
   }
-  /// Displacement of a contact.
-  /// @param d  displacement with the centre at its initial position; for a touching wall under force control, at its
-  ///           present one
-  [[nodiscard]] double displacement(const Law& law, const Contact& c, std::size_t i, double d,
-                                    std::span<const double> y) const {
+  /// Approach of wall and particle, the displacement that a law takes.
+  /// @param d  displacement of the wall; of a touching wall under force control, the approach itself
+  [[nodiscard]] double approach(const Law& law, const Contact& c, std::size_t i, double d,
+                                std::span<const double> y) const {
     const double opening = law.opening(c.branch());
     if (c.is_force_controlled()) {
       // An open wall without load stays where it was left, until the particle pushes it.
@@ -82,7 +81,7 @@ class CentreMode {
       const double force = c.prescribed_force(xi);
       return force > 0.0 ? c.power(law, xi, now) - force * centre_.approach_by_centre(i, velocity) : 0.0;
     }
-    const double d = displacement(law, c, i, c.drive().value(xi), y);
+    const double d = approach(law, c, i, c.drive().value(xi), y);
     return c.bears(law, d) ? law.force(c.branch(), d) * c.drive().rate() : 0.0;
   }
   /// Velocity of the centre.
@@ -155,10 +154,10 @@ class CentreMode {
     if (const auto ahead = c.next(law)) add(k_boundary, 1, ahead->event, ahead->position);
     if (c.is_on_primary_branch() && roles_[i] == Role::bearing) add(k_retreat, -1, "retreat", 0.0);
   }
-  /// True if a contact whose guard has found it lost still has an overlap. The balance has the round-off of the largest
-  /// forces, which may have opened a trial state of a contact near the resolution.
-  [[nodiscard]] bool bears_on(const Law& law, std::span<const Contact> contacts, std::size_t i, double xi,
-                              std::span<const double> y) {
+  /// True if a contact whose guard has found it lost still has an overlap. In a trial state, the round-off of the
+  /// largest forces may have opened a contact whose overlap is near the resolution.
+  [[nodiscard]] bool is_still_pressed(const Law& law, std::span<const Contact> contacts, std::size_t i, double xi,
+                                      std::span<const double> y) {
     return overlap_as_touching(law, contacts, i, xi, position(y)) > k_touch;
   }
   /// Value of a guard that arm_guards() has listed.

@@ -108,17 +108,17 @@ FreeCentre::Vector FreeCentre::flight(const CentreWalls& walls, std::span<const 
   std::optional<std::size_t> nearest;
   double distance = k_infinity;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    const double approach = lines_.mean_normal(i).dot(path);
-    if (roles[i] != Role::bearing || walls.prescribed_force(i) || approach <= k_no_direction) continue;
+    const double cosine = lines_.mean_normal(i).dot(path);
+    if (roles[i] != Role::bearing || walls.prescribed_force(i) || cosine <= k_no_direction) continue;
     const double gap = std::max(0.0, -(walls.overlap(i) + lines_.mean_normal(i).dot(c)));
-    if (gap / approach >= distance) continue;
+    if (gap / cosine >= distance) continue;
     nearest = i;
-    distance = gap / approach;
+    distance = gap / cosine;
   }
   if (!nearest) throw DomainError(Limit::centre_driven_away);
-  const double approach = lines_.mean_normal(*nearest).dot(path);
-  const double overlap = walls.overlap_under(*nearest, size / (counts_[*nearest] * approach));
-  return (distance + overlap / approach) * path;
+  const double cosine = lines_.mean_normal(*nearest).dot(path);
+  const double overlap = walls.overlap_under(*nearest, size / (counts_[*nearest] * cosine));
+  return (distance + overlap / cosine) * path;
 }
 
 /// Share of a step that leads to about the minimum of the energy along it. The energy is convex, so that its slope

@@ -186,8 +186,8 @@ class CalibrationReader {
     std::vector<double> weights;
     if (!has_failed() && !y.values.empty()) {
       if (has_noise) {
-        curve.noise = noise_in(reading_, data, dimension_of(x.si).value_or(Dimension::none),
-                               dimension_of(y.si).value_or(Dimension::none));
+        curve.noise = read_noise(reading_, data, dimension_of(x.si).value_or(Dimension::none),
+                                 dimension_of(y.si).value_or(Dimension::none));
       }
       if (!has_failed()) {
         weights = has_noise ? weights_by_noise(deviations ? &*deviations : nullptr, *measured, y, curve)

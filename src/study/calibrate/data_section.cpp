@@ -143,7 +143,7 @@ std::optional<ColumnSpec> noise_column_in(const Section& data) {
   const Section::Origin origin = data.table(k_noise, std::string(k_noise));
   const KeySpec::Kind kind = kind_of(*origin.table, "column", KeySpec::Kind::text);
   if (!origin.table->contains("column") || (kind != KeySpec::Kind::text && kind != KeySpec::Kind::integer)) return {};
-  FaultList ignored;  // noise_in() reads the section again, and reports its faults
+  FaultList ignored;  // read_noise() reads the section again, and reports its faults
   Reading reading{ignored};
   const Keys keys = noise_keys(Dimension::none, Dimension::none, kind);
   const Section noise(reading, origin, keys);
@@ -152,7 +152,7 @@ std::optional<ColumnSpec> noise_column_in(const Section& data) {
                     .unit_at = noise.value_place("column")};
 }
 
-NoiseParts noise_in(Reading& reading, const Section& data, Dimension of_x, Dimension of_y) {
+NoiseParts read_noise(Reading& reading, const Section& data, Dimension of_x, Dimension of_y) {
   const Section::Origin origin = data.table(k_noise, std::string(k_noise));
   const Keys keys = noise_keys(of_x, of_y, kind_of(*origin.table, "column", KeySpec::Kind::text));
   const Section noise(reading, origin, keys);

@@ -37,7 +37,7 @@ struct ColumnSpec {
 [[nodiscard]] std::optional<ColumnSpec> noise_column_in(const Section& data);
 
 /// Reads the parts that `noise` gives, and reports faults in them. @param of_x, of_y  dimensions
-[[nodiscard]] NoiseParts noise_in(Reading& reading, const Section& data, Dimension of_x, Dimension of_y);
+[[nodiscard]] NoiseParts read_noise(Reading& reading, const Section& data, Dimension of_x, Dimension of_y);
 
 /// Reads a compliance written with its unit, and reports a fault if the text is no compliance.
 [[nodiscard]] ParsedCompliance compliance_in(Reading& reading, const Section& section, std::string_view key);

@@ -71,14 +71,14 @@ void ErrorsInX::follow(const Response& response) {
   }
 }
 
-void ErrorsInX::move_turns(std::span<const double> parameters, const Response& response) {
+void ErrorsInX::set_effects_of_turns(std::span<const double> parameters, const Response& response) {
   const std::span<const double> y = response.at_points();
   const std::vector<double> measured = path_.at_points(y_of(calibration_, curve_));
   for (std::size_t turn = 0; turn < turns_.size(); ++turn) {
     const auto [end, error] = turns_[turn];
     auto column = of_turns_.col(static_cast<Eigen::Index>(turn));
     column.setZero();
-    for (const double side : {1.0, -1.0}) {  // inwards only if the scenario cannot follow a turn farther out
+    for (const double side : {1.0, -1.0}) {  // outwards first; inwards if the scenario cannot follow that
       if (!respond_with(parameters, end, side * error, measured)) continue;
       for (std::size_t row = 0; row < slopes_.size(); ++row) {
         const std::size_t point = path_.point_of[row];

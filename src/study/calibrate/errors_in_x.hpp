@@ -23,7 +23,7 @@ class ErrorsInX {
   /// Sets slopes and curvature biases. @param response  that has run along this path
   void follow(const Response& response);
   /// Sets the effects of turns, after follow(). @param response  that has run with these parameters along this path
-  void move_turns(std::span<const double> parameters, const Response& response);
+  void set_effects_of_turns(std::span<const double> parameters, const Response& response);
 
   /// dy/dx of the response in every row, on the row's own branch: the secant over a standard deviation of x to both
   /// sides. Zero in a hold, whose rows lie at the turn whatever their own x is.
@@ -33,7 +33,7 @@ class ErrorsInX {
   [[nodiscard]] std::span<const double> curvature_biases() const noexcept { return curvature_biases_; }
   /// Change of the response in every row by an error of one standard deviation of each turn; zero for a turn that the
   /// scenario cannot follow if it is moved to either side.
-  [[nodiscard]] const Eigen::MatrixXd& of_turns() const noexcept { return of_turns_; }
+  [[nodiscard]] const Eigen::MatrixXd& effects_of_turns() const noexcept { return of_turns_; }
 
  private:
   struct UncertainTurn {

@@ -8,12 +8,12 @@
 namespace monograin {
 namespace {
 
-constexpr int k_most_better = 3;  // better fits that the search for intervals may find
-constexpr double k_margin_of_round_off = 1e3;
-constexpr double k_bad_condition = 1e3;  // a correlation of 1 - 2e-6
+constexpr int k_most_better = 3;               // better fits that the search for intervals may find
+constexpr double k_margin_of_round_off = 1e3;  // residuals up to this many times the solver's noise are round-off
+constexpr double k_bad_condition = 1e3;        // a correlation of 1 - 2e-6
 constexpr std::size_t k_bootstrap_samples = 400;
 constexpr std::uint64_t k_seed = 20260101;
-constexpr double k_narrow = 0.2;  // of a bootstrap's standard error over that by the covariance
+constexpr double k_narrow = 0.2;  // largest ratio of a bootstrap's standard error to the covariance's that gets a note
 
 void covariance_intervals(CalibrationResult& result) {
   result.intervals.clear();

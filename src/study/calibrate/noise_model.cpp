@@ -57,7 +57,7 @@ bool NoiseModel::follow_fit(std::span<const double> parameters, std::span<const 
     }
   }
   follow_slopes(responses);
-  for (auto& [c, errors] : errors_in_x_) errors.move_turns(parameters, responses[c]);
+  for (auto& [c, errors] : errors_in_x_) errors.set_effects_of_turns(parameters, responses[c]);
   const bool has_changed = !std::ranges::equal(trial_weights_, weights_, [](double trial, double weight) {
     return std::abs(trial - weight) <= k_same_weight * trial;
   });
@@ -68,11 +68,11 @@ bool NoiseModel::follow_fit(std::span<const double> parameters, std::span<const 
 
 Eigen::MatrixXd NoiseModel::effects_of_turns() const {
   Eigen::Index count = 0;
-  for (const auto& [c, errors] : errors_in_x_) count += errors.of_turns().cols();
+  for (const auto& [c, errors] : errors_in_x_) count += errors.effects_of_turns().cols();
   Eigen::MatrixXd effects = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(weights_.size()), count);
   Eigen::Index turn = 0;
   for (const auto& [c, errors] : errors_in_x_) {
-    const Eigen::MatrixXd& part = errors.of_turns();
+    const Eigen::MatrixXd& part = errors.effects_of_turns();
     effects.block(static_cast<Eigen::Index>(calibration_.curves[c].begin), turn, part.rows(), part.cols()) = part;
     turn += part.cols();
   }

@@ -282,9 +282,9 @@ Eigen::MatrixXd with_errors_in_x(const Eigen::MatrixXd& jacobian, const Calibrat
                                  std::span<const double> values, const Response& response) {
   ErrorsInX errors(fit, fit.curves.front(), path);
   errors.follow(response);
-  errors.move_turns(values, response);
+  errors.set_effects_of_turns(values, response);
   const Eigen::Index rows = jacobian.rows();
-  Eigen::MatrixXd effects = errors.of_turns();
+  Eigen::MatrixXd effects = errors.effects_of_turns();
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows + effects.cols(), jacobian.cols());
   for (Eigen::Index row = 0; row < rows; ++row) {
     const auto k = static_cast<std::size_t>(row);

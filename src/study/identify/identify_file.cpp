@@ -207,7 +207,7 @@ class PlanReader {
     if (needs_drive && !take_drive(section, program)) return;
     const Dimension of_x = program.driven.kind == Step::Kind::force ? Dimension::force : Dimension::length;
     const auto parts =
-        calibration::noise_in(reading_, section, of_x, calibration::dimension_of(y->unit).value_or(Dimension::none));
+        calibration::read_noise(reading_, section, of_x, calibration::dimension_of(y->unit).value_or(Dimension::none));
     program.absolute_noise = parts.absolute;
     program.relative_noise = parts.relative;
     program.noise_of_x = parts.x;

@@ -306,7 +306,7 @@ Said said_by(Particle& particle, std::span<const double> y) {
   particle.evaluate(y);
   Said said{{}, {}, {}, {}, particle.coverage().Om, particle.stored_energy()};
   for (std::size_t i = 0; i < particle.size(); ++i) {
-    said.overlap.push_back(particle.classes[i].displacement + particle.carried(i));
+    said.overlap.push_back(particle.classes[i].displacement + particle.approach_by_centre(i));
     said.f.push_back(particle.classes[i].yield.f);
     said.force.push_back(particle.classes[i].contact.F);
     said.driving.push_back(1.0 - particle.classes[i].yield.b);

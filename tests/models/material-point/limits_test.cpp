@@ -9,7 +9,7 @@
 namespace monograin::material_point::limits_test {
 namespace {
 
-TEST(PointLimits, AreThoseThatTheMaterialCanMeet) {
+TEST(MaterialPointLimits, AreThoseThatTheMaterialCanMeet) {
   Phase phase;
   phase.parameters = von_mises(3.0);
   EXPECT_EQ(limits_of(phase), std::vector{Limit::loss_of_uniqueness});
@@ -20,7 +20,7 @@ TEST(PointLimits, AreThoseThatTheMaterialCanMeet) {
   EXPECT_EQ(limits_of(phase).size(), 1U);
 }
 
-TEST(PointLimits, AreAheadOfAPointThatBeginsToYield) {
+TEST(MaterialPointLimits, AreAheadOfAPointThatBeginsToYield) {
   for (const YieldingPoint& point : yielding_points()) {
     SCOPED_TRACE(point.name);
     for (const Limit limit : limits_of(point.phase)) {
@@ -32,7 +32,7 @@ TEST(PointLimits, AreAheadOfAPointThatBeginsToYield) {
   }
 }
 
-TEST(PointLimits, AreMetWhereTheirQuantitySaysSo) {
+TEST(MaterialPointLimits, AreMetWhereTheirQuantitySaysSo) {
   const Parameters m = base_case();
   Phase phase;
   phase.parameters = m;
@@ -53,7 +53,7 @@ TEST(PointLimits, AreMetWhereTheirQuantitySaysSo) {
   EXPECT_EQ(end.point.value, 1.0);
 }
 
-TEST(PointLimits, PerfectPlasticityUnderStressHasNoUniqueFlow) {
+TEST(MaterialPointLimits, PerfectPlasticityUnderStressHasNoUniqueFlow) {
   const YieldingPoint point = yielding_point(von_mises(0.0), {0.0, -4.0, Control::stress}, {0.0, 0.0, Control::stress});
   EXPECT_LE(distance_to(Limit::loss_of_uniqueness, point.phase, point.response).margin, 0.0);
 }

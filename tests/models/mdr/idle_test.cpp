@@ -16,7 +16,7 @@ Particle pressed(double deep, double shallow, bool is_free = true) {
       is_free);
 }
 
-TEST(MdrResolution, GrowsWithTheForcesOnTheCentre) {
+TEST(MdrIdle, GrowsWithTheForcesOnTheCentre) {
   const Particle soft = pressed(1e-4, 1e-4);
   const Particle hard = pressed(1e-2, 1e-2);
   EXPECT_GT(hard.force_round_off(), soft.force_round_off());
@@ -24,25 +24,25 @@ TEST(MdrResolution, GrowsWithTheForcesOnTheCentre) {
   EXPECT_GE(resolution(soft), k_resolution);
 }
 
-TEST(MdrResolution, RoundOffOfForcesIsNegligibleBesideThem) {
+TEST(MdrIdle, RoundOffOfForcesIsNegligibleBesideThem) {
   const Particle p = pressed(1e-3, 1e-3);
   EXPECT_GT(p.force_round_off(), std::numeric_limits<double>::epsilon() * p.magnitude_of_forces());
   EXPECT_LT(p.force_round_off(), 1e-9 * p.magnitude_of_forces());
 }
 
-TEST(MdrResolution, AContactOfAFreeCentreBelowItIsIdle) {
+TEST(MdrIdle, AContactOfAFreeCentreBelowItIsIdle) {
   const Particle p = pressed(1e-3, 1e-14);
   EXPECT_FALSE(is_idle(p, 0));
   EXPECT_TRUE(is_idle(p, 2));
   EXPECT_LT(p.contact(2).overlap, resolution(p));
 }
 
-TEST(MdrResolution, NoContactOfAFixedCentreIsIdle) {
+TEST(MdrIdle, NoContactOfAFixedCentreIsIdle) {
   const Particle p = pressed(1e-3, 1e-14, false);
   for (std::size_t i = 0; i < p.size(); ++i) EXPECT_FALSE(is_idle(p, i));
 }
 
-TEST(MdrResolution, AnOpenContactIsNotIdle) {
+TEST(MdrIdle, AnOpenContactIsNotIdle) {
   Particle p = pressed(1e-3, 1e-14);
   p.lose(2);
   EXPECT_FALSE(is_idle(p, 2));

@@ -179,7 +179,7 @@ double largest_drift(const CheckedScenario& scenario, std::string_view integrato
   system.start(y);
   system.begin_step(ramps, y, log);
   GuardSet watch(system);
-  watch.begin_step({}, 0.0, y);
+  watch.begin_leg({}, 0.0, y);
   const auto integrator_used = make_integrator(integrator, system, watch, relative(rtol));
   double worst = 0.0;
   double xi = 0.0;

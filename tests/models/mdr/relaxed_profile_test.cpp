@@ -64,7 +64,7 @@ TEST(MdrRelaxedProfile, MeetsTheReferenceOfAConcaveConvexProfile) {
       // The last radius of the reference is the profile's end up to round-off.
       const double a = std::min(radii[i], profile.largest_radius());
       const PeelState state = peel_state(profile, {1.0, k_surface_energy}, a);
-      EXPECT_NEAR(profile.image(a), image[i], 1e-14) << "a = " << a << ", samples: " << count;
+      EXPECT_NEAR(profile.image_height(a), image[i], 1e-14) << "a = " << a << ", samples: " << count;
       EXPECT_NEAR(state.displacement_1d, displacement[i], 1e-14) << "a = " << a << ", samples: " << count;
       EXPECT_NEAR(state.force, force[i], 1e-14) << "a = " << a << ", samples: " << count;
     }
@@ -119,7 +119,7 @@ TEST(MdrRelaxedProfile, IsExactForEvenPolynomialsOfDegreeSix) {
   // The round-off of heights of size 3 in a slope in r^2 between the closest samples.
   constexpr double tolerance = 3.0 * k_epsilon / (0.11 * 0.11);
   for (const double x : {0.0, 0.05, 0.11, 0.3, 0.41, 0.9, 1.0}) {
-    EXPECT_NEAR(profile.image(x), image(x), 2.0 * tolerance) << "x = " << x;
+    EXPECT_NEAR(profile.image_height(x), image(x), 2.0 * tolerance) << "x = " << x;
     EXPECT_NEAR(profile.image_slope(x), slope(x), 20.0 * tolerance) << "x = " << x;
     EXPECT_NEAR(profile.image_area(x), area(x), tolerance) << "x = " << x;
   }
@@ -227,9 +227,9 @@ TEST(MdrRelaxedProfile, RefusesSamplesThatAreNoProfile) {
 TEST(MdrRelaxedProfile, EndsWithItsSamples) {
   const RelaxedProfile profile = bowl(20).profile();
   const double end = profile.largest_radius();
-  EXPECT_NO_THROW(static_cast<void>(profile.image(end)));
+  EXPECT_NO_THROW(static_cast<void>(profile.image_height(end)));
   for (const double x : {-1e-300, end * (1.0 + k_epsilon), std::nan("")}) {
-    EXPECT_THROW(static_cast<void>(profile.image(x)), std::domain_error) << x;
+    EXPECT_THROW(static_cast<void>(profile.image_height(x)), std::domain_error) << x;
     EXPECT_THROW(static_cast<void>(profile.image_slope(x)), std::domain_error) << x;
     EXPECT_THROW(static_cast<void>(profile.image_area(x)), std::domain_error) << x;
     EXPECT_THROW(static_cast<void>(peel_state(profile, {1.0, 0.0}, x)), std::domain_error) << x;

@@ -75,18 +75,18 @@ HertzWalls random_cell(std::mt19937& random) {
   return HertzWalls(std::move(list));
 }
 
-TEST(CentreSolver, LiesHalfWayBetweenTwoWallsThatSqueezeIt) {
+TEST(FreeCentreSolver, LiesHalfWayBetweenTwoWallsThatSqueezeIt) {
   const HertzWalls pair({{{0, 0, 1}, 0.3}, {{0, 0, -1}, 0.1}});
   EXPECT_NEAR(pair.centre().z(), -0.1, 1e-15);
   EXPECT_EQ(pair.centre().head<2>().norm(), 0.0);
 }
 
-TEST(CentreSolver, LiesWhereTheContactsBearAPrescribedForce) {
+TEST(FreeCentreSolver, LiesWhereTheContactsBearAPrescribedForce) {
   const HertzWalls pressed({{{0, 0, 1}, 0.0, 0.01}, {{0, 0, -1}, 0.0}});
   EXPECT_NEAR(pressed.centre().z(), -std::pow(0.0075, 2.0 / 3.0), 1e-15);
 }
 
-TEST(CentreSolver, BalancesTheForcesOfAnyCell) {
+TEST(FreeCentreSolver, BalancesTheForcesOfAnyCell) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 200; ++trial) {
     const HertzWalls cell = random_cell(random);
@@ -94,7 +94,7 @@ TEST(CentreSolver, BalancesTheForcesOfAnyCell) {
   }
 }
 
-TEST(CentreSolver, DoesNotDependOnTheGuessNorOnTheOrderOfTheWallsNorOnTheAxes) {
+TEST(FreeCentreSolver, DoesNotDependOnTheGuessNorOnTheOrderOfTheWallsNorOnTheAxes) {
   std::mt19937 random(11);
   std::normal_distribution<double> component;
   for (int trial = 0; trial < 200; ++trial) {
@@ -112,7 +112,7 @@ TEST(CentreSolver, DoesNotDependOnTheGuessNorOnTheOrderOfTheWallsNorOnTheAxes) {
   }
 }
 
-TEST(CentreSolver, IsNotPushedAcrossBigForcesByTheirRoundOff) {
+TEST(FreeCentreSolver, IsNotPushedAcrossBigForcesByTheirRoundOff) {
   // Two walls press a thousand times as deep as the contacts across them.
   const Eigen::Vector3d normal(0.6, 0.48, 0.64);
   const HertzWalls cell({{normal, 0.3}, {-normal, 0.31}, {{0.8, -0.36, -0.48}, 1e-9}, {{-0.8, 0.36, 0.48}, 3e-9}});
@@ -121,7 +121,7 @@ TEST(CentreSolver, IsNotPushedAcrossBigForcesByTheirRoundOff) {
   EXPECT_NEAR(centre.dot(normal), 0.005, 1e-15);
 }
 
-TEST(CentreSolver, IsCarriedByTheLeastThatClearsTheWallsThatPushIt) {
+TEST(FreeCentreSolver, IsCarriedByTheLeastThatClearsTheWallsThatPushIt) {
   const HertzWalls one({{{0, 0.6, 0.8}, 0.2}, {{0, 0, -1}, -1.0}});
   EXPECT_LE((one.centre() - Eigen::Vector3d(0, -0.12, -0.16)).norm(), 1e-15);
   // Both walls push: the centre moves along the edge between them, to the nearest position.
@@ -129,7 +129,7 @@ TEST(CentreSolver, IsCarriedByTheLeastThatClearsTheWallsThatPushIt) {
   EXPECT_LE((wedge.centre() - Eigen::Vector3d(-0.1, -0.3, 0)).norm(), 1e-15);
 }
 
-TEST(CentreSolver, StaysAcrossTheDirectionsInWhichContactsBear) {
+TEST(FreeCentreSolver, StaysAcrossTheDirectionsInWhichContactsBear) {
   const HertzWalls pair({{{0, 0, 1}, 0.3}, {{0, 0, -1}, 0.1}, {{1, 0, 0}, -0.5}});
   FreeCentre centre(pair.classes());
   const Vector rest = Vector(0.01, 0.02, 0.03).cwiseMin(Vector::Ones());
@@ -140,12 +140,12 @@ TEST(CentreSolver, StaysAcrossTheDirectionsInWhichContactsBear) {
   EXPECT_NEAR(after.z(), -0.1, 1e-15);
 }
 
-TEST(CentreSolver, IsTakenByAForceToTheWallInItsPath) {
+TEST(FreeCentreSolver, IsTakenByAForceToTheWallInItsPath) {
   const HertzWalls gap({{{0, 0, 1}, 0.0, 0.01}, {{0, 0, -1}, -0.2}, {{1, 0, 0}, 0.0}});
   EXPECT_NEAR(gap.centre().z(), -0.2 - std::pow(0.0075, 2.0 / 3.0), 1e-15);
 }
 
-TEST(CentreSolver, IsDrivenAwayByAForceWithNoWallInItsPath) {
+TEST(FreeCentreSolver, IsDrivenAwayByAForceWithNoWallInItsPath) {
   const HertzWalls open({{{0, 0, 1}, 0.0, 0.01}, {{1, 0, 0}, 0.0}});
   try {
     static_cast<void>(open.centre());
@@ -155,7 +155,7 @@ TEST(CentreSolver, IsDrivenAwayByAForceWithNoWallInItsPath) {
   }
 }
 
-TEST(CentreSolver, MovesAtTheRateOfItsPosition) {
+TEST(FreeCentreSolver, MovesAtTheRateOfItsPosition) {
   std::mt19937 random(13);
   for (int trial = 0; trial < 50; ++trial) {
     const HertzWalls cell = random_cell(random);
@@ -177,7 +177,7 @@ TEST(CentreSolver, MovesAtTheRateOfItsPosition) {
   }
 }
 
-TEST(CentreSolver, RolesTellWhatBearsFromWhatPushes) {
+TEST(FreeCentreSolver, RolesTellWhatBearsFromWhatPushes) {
   // The upper walls come down on a loose particle: the first one pushes it, and both carry load once it is squeezed.
   const auto roles_at = [](double top, double bottom) {
     const HertzWalls walls({{{0, 0, 1}, top}, {{0, 0, -1}, bottom}, {{1, 0, 0}, -0.5}});

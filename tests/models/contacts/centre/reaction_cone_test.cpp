@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(Backing, IsThereWhereThePushGoesIntoTheWallsAndNotBesideThem) {
+TEST(ReactionCone, IsThereWhereThePushGoesIntoTheWallsAndNotBesideThem) {
   const std::vector<Vector3d> wedge{Vector3d(1, 0, -1).normalized(), Vector3d(-1, 0, -1).normalized()};
   EXPECT_TRUE(in_reaction_cone({0, 0, 1}, wedge));
   EXPECT_TRUE(in_reaction_cone({0.9, 0, 1}, wedge));
@@ -21,7 +21,7 @@ TEST(Backing, IsThereWhereThePushGoesIntoTheWallsAndNotBesideThem) {
   EXPECT_FALSE(in_reaction_cone({0, 0, 1}, {}));
 }
 
-TEST(Backing, IsNotThatOfWallsThatAlignButForRounding) {
+TEST(ReactionCone, IsNotThatOfWallsThatAlignButForRounding) {
   const auto is_backed_at = [](double angle) {
     return in_reaction_cone({-1, 0, 0}, std::vector<Vector3d>{{0, 0, -1}, Vector3d(angle, 0, 1).normalized()});
   };
@@ -29,7 +29,7 @@ TEST(Backing, IsNotThatOfWallsThatAlignButForRounding) {
   EXPECT_FALSE(is_backed_at(1e-8));
 }
 
-TEST(Backing, IsFoundForAnyPushThatPressingForcesMake) {
+TEST(ReactionCone, IsFoundForAnyPushThatPressingForcesMake) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> share;
@@ -44,7 +44,7 @@ TEST(Backing, IsFoundForAnyPushThatPressingForcesMake) {
   }
 }
 
-TEST(Backing, IsNotThereBeyondAPlaneThatNoDirectionCrosses) {
+TEST(ReactionCone, IsNotThereBeyondAPlaneThatNoDirectionCrosses) {
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
   for (int sample = 0; sample < 2000; ++sample) {
