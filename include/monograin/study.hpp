@@ -118,8 +118,7 @@ struct CalibrationResult {
 ///         does not name, or if the scenario cannot follow the data
 /// @throws std::invalid_argument for another confidence, or a source without file and text
 /// @throws std::runtime_error before the fit if the folder holds a run or a plan, or a file of the user with the name
-/// of
-///         one to write, or cannot be written
+///         of one to write, or cannot be written
 /// @throws RunInterrupted if the options end the calibration
 [[nodiscard]] CalibrationResult calibrate(const Source& source, const Options& options = {},
                                           std::optional<double> confidence = {});
