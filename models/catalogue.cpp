@@ -56,9 +56,9 @@ constexpr std::array k_functions{
   MODEL(material_point)         \
   MODEL(packing)
 
-#define MONOGRAIN_DECLARE(folder) \
-  namespace folder {              \
-  Model model() noexcept;         \
+#define MONOGRAIN_DECLARE(space) \
+  namespace space {              \
+  Model model() noexcept;        \
   }
 MONOGRAIN_MODELS(MONOGRAIN_DECLARE)
 
@@ -91,7 +91,7 @@ std::string fault_of_names(const Model& model, const Items& items, const std::st
 }
 
 std::vector<Model>& all_models() {
-#define MONOGRAIN_CALL(folder) folder::model(),
+#define MONOGRAIN_CALL(space) space::model(),
   static std::vector<Model> models{MONOGRAIN_MODELS(MONOGRAIN_CALL)};
   return models;
 }

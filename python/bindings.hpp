@@ -4,8 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <unistd.h>
 
-#include "history/table.hpp"
-#include "monograin/history.hpp"
+#include "api/checked.hpp"
 
 namespace monograin::python {
 
@@ -56,10 +55,5 @@ void add_prepared(py::module_& module);
 void add_studies(py::module_& module);
 void add_models(py::module_& module);
 void add_laws(py::module_& module);
-
-/// A table that nobody changes any more, as columns.
-[[nodiscard]] inline History history_of(Table table) {
-  return History(std::make_shared<const Table>(std::move(table)));
-}
 
 }  // namespace monograin::python

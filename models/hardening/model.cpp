@@ -67,23 +67,19 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
   return list;
 }
 
-ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) { return plastic::draw_power_law(dice, drawn, k_options); }
-
 }  // namespace
 
 Model model() noexcept {
-  return plastic::power_law_model_of<law_of>(
+  return plastic::power_law_model_of<law_of, k_options>(
       {.name = "hardening",
        .summary = "rigid-plastic particle that hardens by a power law, by the semi-mechanistic law",
        .references = k_references,
        .source = "chapter 3; misprints corrected",
-       .options = k_options,
        .configurations = plastic::k_source_configurations,
        .regimes = k_regimes,
        .events = k_events,
        .domain = k_domain,
-       .parameters = parameters,
-       .draw = draw});
+       .parameters = parameters});
 }
 
 }  // namespace monograin::hardening

@@ -49,10 +49,13 @@ inline constexpr std::array k_power_law_material{
 /// Draws strength and exponent of a power law, and the elastic constants that unloading needs.
 [[nodiscard]] ProgramBounds draw_power_law(Dice& dice, DrawnMaterial& drawn, std::span<const OptionKey> options);
 
-/// Completes a model with what follows from the law and its material.
-/// @tparam law_of  function from a scenario to its law
-template <auto law_of>
+/// Completes a model with what follows from the law, its options and its material.
+/// @tparam law_of   function from a scenario to its law
+/// @tparam options  options of the model
+template <auto law_of, const auto& options>
 [[nodiscard]] Model power_law_model_of(Model model) {
+  model.options = options;
+  model.draw = [](Dice& dice, DrawnMaterial& drawn) { return draw_power_law(dice, drawn, options); };
   model.material = k_power_law_material;
   model.objections = power_law_objections;
   model.power_law_of = power_law_of;

@@ -49,24 +49,20 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
   return list;
 }
 
-ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) { return plastic::draw_power_law(dice, drawn, k_options); }
-
 }  // namespace
 
 Model model() noexcept {
-  return plastic::power_law_model_of<law_of>(
+  return plastic::power_law_model_of<law_of, k_options>(
       {.name = "similarity",
        .summary = "rigid-plastic power-law contact by the similarity solution, contacts independent of each other",
        .references = k_references,
        .source = "Shahin (2021), section 2.2 and appendix B",
-       .options = k_options,
        .configurations = k_wall_configurations,
        .has_free_centre = true,
        .regimes = k_regimes,
        .events = k_events,
        .domain = k_domain,
-       .parameters = parameters,
-       .draw = draw});
+       .parameters = parameters});
 }
 
 }  // namespace monograin::similarity

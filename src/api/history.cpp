@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "api/checked.hpp"
 #include "history/compare.hpp"
 #include "history/table.hpp"
 #include "monograin/comparison.hpp"
@@ -79,6 +80,8 @@ struct History::Content {
 History::History() : History(std::vector<Column>{}) {}
 History::History(std::vector<Column> columns) : History(std::make_shared<const Table>(table_of(columns))) {}
 History::History(std::shared_ptr<const Table> table) : content_(std::make_shared<Content>(std::move(table))) {}
+
+History history_of(Table table) { return History(std::make_shared<const Table>(std::move(table))); }
 
 std::size_t History::row_count() const noexcept { return table().row_count(); }
 

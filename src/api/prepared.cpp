@@ -19,6 +19,11 @@
 #include "system/resolution.hpp"
 
 namespace monograin {
+
+void check_threads(int threads) {
+  if (threads >= 0) return;
+  throw std::invalid_argument(fmt::format("threads = {}: expected 0 for one for each core, or more", threads));
+}
 namespace {
 
 /// True for the name of a derivative, which only a run with its sensitivities has.
@@ -186,10 +191,7 @@ MapResult PreparedScenario::map(std::span<const double> samples, std::span<const
   if (samples.size() % width != 0) {
     throw std::invalid_argument(fmt::format("{} values are no rows of {}", samples.size(), width));
   }
-  if (options.threads < 0) {
-    throw std::invalid_argument(
-        fmt::format("threads = {}: expected 0 for one for each core, or more", options.threads));
-  }
+  check_threads(options.threads);
   std::vector<Expression> expressions;
   for (const std::string& text : formulas) {
     try {

@@ -34,8 +34,7 @@ void RunResult::save(const std::filesystem::path& folder) const {
 }
 
 History RunResult::profile(double time, const RunOptions& options) const {
-  Table profiles = contact_profiles(run_->scenario, time, interruptible(options.stop));
-  return History(std::make_shared<const Table>(std::move(profiles)));
+  return history_of(contact_profiles(run_->scenario, time, interruptible(options.stop)));
 }
 
 RunResult run(const Scenario& scenario, const RunOptions& options) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "api/checked.hpp"
 #include "history/staged_folder.hpp"
 #include "monograin/status.hpp"
 #include "scenario/text_file.hpp"
@@ -28,8 +29,6 @@ NamedText text_of(const Source& source, std::string_view expected) {
   if (!source.text) return read_named_text(source.file, expected);
   return {.text = *source.text, .file = source.file.empty() ? fs::path("study.toml") : source.file};
 }
-
-History history_of(Table table) { return History(std::make_shared<const Table>(std::move(table))); }
 
 void end_if_asked(const std::function<bool()>& stop) {
   if (stop && stop()) throw RunInterrupted();
@@ -55,10 +54,7 @@ Sweep plan_of(const Source& source) { return parse_sweep(text_without_data(sourc
 
 /// Does the runs of a sweep, or of its shard.
 SweepResult run_plan(const Sweep& plan, const SweepOptions& options) {
-  if (options.threads < 0) {
-    throw std::invalid_argument(
-        fmt::format("threads = {}: expected 0 for one for each core, or more", options.threads));
-  }
+  check_threads(options.threads);
   if (options.shard < 1 || options.shard > options.shard_count) {
     throw std::invalid_argument(
         fmt::format("shard = {}: expected 1 to the number of shards, {}", options.shard, options.shard_count));

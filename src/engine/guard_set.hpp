@@ -69,7 +69,8 @@ class GuardSet {
   }
   /// True if the guard ends a branch of solutions.
   [[nodiscard]] bool is_branch_end(std::size_t guard) const noexcept {
-    return guard < system_count_ && of_system(guard)->is_branch_end;
+    const Guard* const at = of_system(guard);
+    return at != nullptr && at->is_branch_end;
   }
   /// Number of guards of the system; they come before the conditions of the program.
   [[nodiscard]] std::size_t system_guards() const noexcept { return system_count_; }

@@ -145,7 +145,7 @@ void Differences::find_kink(const RunPair& run_pair) {
   }
 }
 
-double Differences::kink_in(std::size_t column, const Partnership& of, double of_step) const {
+double Differences::kink_in(std::size_t column, const Partnership& other, double other_step) const {
   constexpr double k_sharp = 1e-2;     // difference of the sides, over the largest derivative
   constexpr double k_change = 0.3;     // of the difference in the other pair, over that in the first one
   constexpr double k_clear = 5.0;      // difference in the other pair, over its round-off
@@ -162,10 +162,10 @@ double Differences::kink_in(std::size_t column, const Partnership& of, double of
   for (std::size_t row = 0; row < history_.row_count(); ++row) {
     if (base_.side(row) != RowSide::output) continue;
     const double first = difference(partnerships_[0], row, step());
-    const double here = difference(of, row, of_step);
+    const double here = difference(other, row, other_step);
     if (std::isnan(first) || std::isnan(here)) continue;
     ++rows;
-    const bool is_kept = std::abs(here - first) <= k_change * first && here > k_clear * round_off(of_step);
+    const bool is_kept = std::abs(here - first) <= k_change * first && here > k_clear * round_off(other_step);
     if (!is_kept || first <= least) continue;
     ++sharp_rows;
     largest = std::max(largest, first);

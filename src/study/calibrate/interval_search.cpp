@@ -173,8 +173,9 @@ void IntervalSearch::by_bootstrap(CalibrationResult& result) {
   for (std::size_t k = 0; k < result.intervals.size(); ++k) {
     if (!result.uncertainty.is_determined[k]) continue;
     result.intervals[k] = drawn.interval(k, fit_.calibration.confidence);
-    note_narrow(fit_.calibration.free[k].key.path, drawn.standard_error(k) / result.uncertainty.standard_error(k));
-    rescale(result.uncertainty, k, drawn.standard_error(k) / result.uncertainty.standard_error(k));
+    const double share = drawn.standard_error(k) / result.uncertainty.standard_error(k);
+    note_narrow(fit_.calibration.free[k].key.path, share);
+    rescale(result.uncertainty, k, share);
   }
 }
 
