@@ -558,15 +558,24 @@ def wrapped(text):
     return "\n".join(lines) + "\n"
 
 
+def subcommands_of(help_text):
+    """Names of the commands that a help text lists."""
+    block = help_text.split("Subcommands:", 1)
+    return re.findall(r"^  (\S+)", block[1].split("\n\n")[0], re.MULTILINE) if len(block) == 2 else []
+
+
 def write_commands(program):
     top = run(program, "--help")
     text = f"```text\n{wrapped(top)}```\n"
-    block = top.split("Subcommands:", 1)
-    if len(block) != 2:
+    commands = subcommands_of(top)
+    if not commands:
         fail("'monograin --help' lists no subcommands")
-    commands = re.findall(r"^  (\S+)", block[1].split("\n\n")[0], re.MULTILINE)
     for command in commands:
-        text += f"\n## `monograin {command}`\n\n```text\n{wrapped(run(program, command, '--help'))}```\n"
+        names = [command]
+        for name in names:
+            help_text = run(program, *name.split(), "--help")
+            names += [f"{name} {part}" for part in subcommands_of(help_text)]
+            text += f"\n## `monograin {name}`\n\n```text\n{wrapped(help_text)}```\n"
     write("commands.md", text)
     return commands
 

@@ -7,7 +7,9 @@
 #include "hertz/law.hpp"
 #include "stress_test/checks.hpp"
 #include "stress_test/draw.hpp"
+#include "system/lammps_law.hpp"
 #include "system/model.hpp"
+#include "system/number_text.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::hertz {
@@ -72,6 +74,16 @@ ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
   return {.force = 0.3};
 }
 
+/// LAMMPS takes the material for both bodies, also against a wall. The force constant 4/3 E/(1 - nu^2) makes the wall
+/// rigid.
+LammpsLaw lammps_law(const ModelInput& input) {
+  const std::string rest = " tangential linear_nohistory 0 0 damping velocity";
+  const std::string youngs_modulus = number_text(input.material("youngs_modulus"));
+  const std::string poisson_ratio = number_text(input.material("poisson_ratio"));
+  return {.pair = "hertz/material " + youngs_modulus + " 0 " + poisson_ratio + rest,
+          .wall = "hertz " + number_text(4.0 / 3.0 * composite_modulus(input)) + " 0" + rest};
+}
+
 /// Reports missed contacts: between elastic sphere and wall an overlap always has a force.
 void check(const CheckedRun& run, std::vector<Violation>& found) {
   for (const ContactClass& c : run.classes) {
@@ -102,7 +114,8 @@ Model model() noexcept {
                                      .reach = reach,
                                      .is_elastic = [](const ModelInput&) { return true; },
                                      .draw = draw,
-                                     .check = check});
+                                     .check = check,
+                                     .lammps_law = lammps_law});
 }
 
 }  // namespace monograin::hertz

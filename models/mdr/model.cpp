@@ -2,13 +2,18 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "elastic/hertz.hpp"
 #include "mdr/adhesion_map.hpp"
 #include "mdr/system.hpp"
 #include "stress_test/checks.hpp"
 #include "stress_test/draw.hpp"
+#include "system/lammps_law.hpp"
 #include "system/model.hpp"
+#include "system/number_text.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
@@ -136,6 +141,32 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
   return std::make_unique<System>(settings, std::move(classes));
 }
 
+/// The law of LAMMPS without its bulk response and damping.
+/// @throws std::invalid_argument for options of which LAMMPS has only the default
+LammpsLaw lammps_law(const ModelInput& input) {
+  if (input.curve("pressure_table") != nullptr) {
+    throw std::invalid_argument("LAMMPS has no pressure_table: its mdr hardens as p_Y/Y = 1 + 1.75 exp(-4.4 x)");
+  }
+  for (const auto& [option, only] :
+       {std::pair{"radius_rule", "yielded"}, {"elastic_profile", "ellipse"}, {"delta_max_rule", "running-maximum"}}) {
+    if (input.word(option) != only) {
+      throw std::invalid_argument(std::string("LAMMPS computes mdr with ") + option + " = '" + only + "' only");
+    }
+  }
+  std::string law = "mdr";
+  for (const char* key : {"youngs_modulus", "poisson_ratio", "yield_stress", "surface_energy"}) {
+    law += " " + number_text(input.material(key));
+  }
+  law += " 0 0 tangential linear_nohistory 0 0 damping mdr 1";
+  return {.pair = law,
+          .wall = law,
+          .differences = {
+              "LAMMPS multiplies the force of a wall by 1 + exp(10.7 d/R0 - 10), d = displacement relative to the "
+              "centre: by 1.00005 at first touch, 1.003 at 0.4 R0, 1.01 at 0.5 R0.",
+              "LAMMPS drops a contact and its dent once the wall no longer overlaps the apparent sphere.",
+              "LAMMPS bounds the apparent radius by 1.5 R0."}};
+}
+
 ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {
   const double modulus_over_yield = dice.log_uniform(2.0, 1e6);
   drawn.values = {{"youngs_modulus", 1.0},
@@ -246,7 +277,8 @@ Model model() noexcept {
           .reach = reach,
           .draw = draw,
           .check = check,
-          .adhesion_map = &k_adhesion_map};
+          .adhesion_map = &k_adhesion_map,
+          .lammps_law = lammps_law};
 }
 
 }  // namespace monograin::mdr

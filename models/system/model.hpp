@@ -242,13 +242,15 @@ struct PowerLaw {
   double exponent = 0.0;
 };
 
-// stress/draw.hpp, stress/checks.hpp, system/curve_procedure.hpp and system/adhesion_map.hpp define these.
+// stress_test/draw.hpp, stress_test/checks.hpp, system/curve_procedure.hpp, system/adhesion_map.hpp and
+// system/lammps_law.hpp define these.
 class Dice;
 struct AdhesionMap;
 struct CheckedRun;
 struct CurveProcedure;
 struct DrawnMaterial;
 struct DrawnStep;
+struct LammpsLaw;
 struct ProgramBounds;
 struct Violation;
 
@@ -326,6 +328,9 @@ struct Model {
   const CurveProcedure* curve_procedure = nullptr;
   /// Map of the materials for which the model's pull-off can be trusted. Null: there is none.
   const AdhesionMap* adhesion_map = nullptr;
+  /// Law of LAMMPS with these equations. Null: LAMMPS has none.
+  /// @throws std::invalid_argument that says why LAMMPS has none for the options or the material of the scenario
+  LammpsLaw (*lammps_law)(const ModelInput& input) = nullptr;
 
   /// True if the model has a particle and walls; false for a material point or a packing.
   [[nodiscard]] bool has_walls() const noexcept { return drives.empty(); }

@@ -60,6 +60,7 @@ void add_regress_command(CLI::App& app, Action& action);
 void add_calibrate_command(CLI::App& app, Action& action);
 void add_design_command(CLI::App& app, Action& action);
 void add_data_command(CLI::App& app, Action& action);
+void add_export_command(CLI::App& app, Action& action);
 void add_sweep_command(CLI::App& app, Action& action);
 void add_sensitivity_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);

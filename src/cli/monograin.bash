@@ -3,7 +3,7 @@
 _monograin() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} options
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "run check models cite units plot atlas compare regress calibrate design data sweep sensitivity bench stress schema --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "run check models cite units plot atlas compare regress calibrate design data export sweep sensitivity bench stress schema --help --version" -- "$current")
     return
   fi
   if [[ $previous == models ]]; then
@@ -18,16 +18,21 @@ _monograin() {
     mapfile -t COMPREPLY < <(compgen -W "$(monograin models 2>/dev/null | awk 'NF == 0 { exit } { print $1 }')" -- "$current")
     return
   fi
+  if [[ ${COMP_WORDS[1]} == export ]] && ((COMP_CWORD == 2)); then
+    mapfile -t COMPREPLY < <(compgen -W "lammps table --help" -- "$current")
+    return
+  fi
   case ${COMP_WORDS[1]} in
     run) options="--output --set --plot --quiet --help" ;;
     check) options="--set --help" ;;
     models) options="--parameters --for --help" ;;
-    plot) options="--output --profile --x --y --unit --data --help" ;;
+    plot) options="--output --profile --vtk --x --y --unit --data --help" ;;
     atlas) options="--plots --output --list --help" ;;
     compare) options="--x --y --tol --help" ;;
     calibrate) options="--output --confidence --report --quiet --strict --help" ;;
     design) options="--output --help" ;;
     data) options="--x --y --plot --output --help" ;;
+    export) options="--set --output --wall --help" ;;
     sweep) options="--jobs --shard --design-only --output --quiet --help" ;;
     sensitivity) options="--jobs --confidence --output --help" ;;
     bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --help" ;;

@@ -10,9 +10,11 @@
 #include "cli/commands.hpp"
 #include "cli/data_folder.hpp"
 #include "cli/terminal.hpp"
+#include "exchange/vtk.hpp"
 #include "figure/column_chart.hpp"
 #include "figure/figure.hpp"
 #include "figure/page.hpp"
+#include "figure/run_curves.hpp"
 #include "history/compare.hpp"
 #include "history/profile.hpp"
 #include "history/run_files.hpp"
@@ -36,6 +38,7 @@ struct PlotOptions {
   std::vector<std::string> runs;
   std::string output;
   std::optional<double> profile;  ///< [s]
+  bool writes_vtk = false;
   figure::ColumnChoice columns;
   std::vector<std::string> data;
 
@@ -44,10 +47,13 @@ struct PlotOptions {
   }
 };
 
+/// Folder of a run that is named by itself or by its history.csv.
+fs::path folder_of(const fs::path& run) { return fs::is_directory(run) ? run : run.parent_path(); }
+
 int plot_profile(const PlotOptions& options) {
   if (options.runs.size() != 1) throw UsageError("--profile takes one run");
   const fs::path run = options.runs.front();
-  const fs::path folder = fs::is_directory(run) ? run : run.parent_path();
+  const fs::path folder = folder_of(run);
   const fs::path output = options.output.empty() ? folder / "profile.svg" : fs::path(options.output);
   const Table profiles = [&] {
     try {
@@ -61,11 +67,28 @@ int plot_profile(const PlotOptions& options) {
   return k_success;
 }
 
+/// Writes the particle of each run for ParaView, into the folder vtk of the run or the folder of -o.
+int plot_vtk(const PlotOptions& options) {
+  if (!options.output.empty() && options.runs.size() != 1) throw UsageError("-o takes the particle of one run");
+  for (const fs::path run : options.runs) {
+    const fs::path folder = folder_of(run);
+    const fs::path output = options.output.empty() ? folder / "vtk" : fs::path(options.output);
+    StagedFolder staged(output, k_vtk_series);
+    try {
+      write_vtk(motion_of(scenario_of_run(folder), figure::read_table(folder / k_run_tables.front())), staged.path());
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(fmt::format("{}: {}", run.string(), error.what()));
+    }
+    staged.publish(staged.age());
+    say("particle -> {}\n", (output / k_vtk_series).string());
+  }
+  return k_success;
+}
+
 /// Notes data with the machine's part over a run of a scenario that was fitted without it.
 void note_machine(const std::vector<fs::path>& runs, const std::string& data) {
   for (const fs::path& run : runs) {
-    const fs::path folder = fs::is_directory(run) ? run : run.parent_path();
-    const std::string text = read_text_file(folder / "run.json", k_largest_data).text;
+    const std::string text = read_text_file(folder_of(run) / "run.json", k_largest_data).text;
     if (text.find(k_without_machine) == std::string::npos) continue;
     say("note: {} is a run of the particle alone; '{}' is drawn as recorded, with what the machine adds. The folder of "
         "the calibration, after --data, has the data without it\n",
@@ -103,9 +126,12 @@ int plot(const PlotOptions& options) {
     }
   }
   if (options.profile && options.has_own_axes()) throw UsageError("--profile has axes of its own");
+  if (options.writes_vtk && (options.profile || options.has_own_axes())) {
+    throw UsageError("--vtk writes the particle and takes no other choice but -o");
+  }
   if (options.profile) return plot_profile(options);
-  const fs::path first = fs::is_directory(runs.front()) ? runs.front() : runs.front().parent_path();
-  const fs::path output = options.output.empty() ? first / "figure.svg" : fs::path(options.output);
+  if (options.writes_vtk) return plot_vtk(options);
+  const fs::path output = options.output.empty() ? folder_of(runs.front()) / "figure.svg" : fs::path(options.output);
   if (options.has_own_axes() || std::ranges::any_of(runs, figure::is_sweep)) {
     figure::draw_chart(column_chart_of(options, runs).chart, "columns of runs", output);
   } else {
@@ -292,6 +318,9 @@ void add_plot_command(CLI::App& app, Action& action) {
       "--data", options->data,
       "File of measured data to draw as points, read as by monograin data; its columns are found by "
       "the dimensions of the axes. The folder of a calibration: its data without what the machine adds");
+  command->add_flag(
+      "--vtk", options->writes_vtk,
+      "Write particle and walls at each output point for ParaView instead [folder vtk in that of the run]");
   command->footer("Example: monograin plot runs/die -o die.pdf");
   command->callback([options, &action] { action = [options] { return plot(*options); }; });
 }

@@ -1,0 +1,167 @@
+#include "exchange/lammps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "exchange/motion_of_run.hpp"
+#include "history/table.hpp"
+#include "support/refusal.hpp"
+#include "support/scenario_texts.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test_run.hpp"
+#include "support/text_file.hpp"
+
+namespace monograin {
+namespace {
+
+std::string input_of(const CheckedScenario& scenario) {
+  return lammps_input(scenario, motion_of_run(scenario), lammps_law_of(scenario), "forces.csv");
+}
+
+/// A particle of mdr with the rule of growth that LAMMPS has.
+CheckedScenario mdr(Configuration configuration, std::vector<Step> steps) {
+  return with(mdr_scenario(configuration, 50.0, 0.3, std::move(steps)), "radius_rule", "yielded");
+}
+
+CheckedScenario die() { return mdr(Configuration::die, path({0.1, 0.08})); }
+
+/// The runs of an input file: their numbers of steps, and where the variables of displacements begin and end.
+struct Piece {
+  std::map<std::string, double> from{};
+  std::map<std::string, double> change{};
+  double steps = 0.0;
+};
+
+std::vector<Piece> pieces_of(const std::string& input) {
+  std::vector<Piece> pieces(1);
+  const std::string number = "[0-9.]+(?:e[-+][0-9]+)?";
+  const std::regex variable("variable (d_\\w+|centre_\\w) equal (-?" + number + ")(?:([-+]" + number +
+                            ")\\*elapsed/\\d+)?");
+  std::istringstream lines(input);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, variable)) {
+      pieces.back().from[match[1]] = std::stod(match[2]);
+      pieces.back().change[match[1]] = match[3].matched ? std::stod(match[3]) : 0.0;
+    } else if (line.starts_with("run ")) {
+      pieces.back().steps = std::stod(line.substr(4));
+      pieces.emplace_back();
+    }
+  }
+  pieces.pop_back();
+  return pieces;
+}
+
+TEST(LammpsInput, FollowsTheProgramInPiecesOfConstantVelocity) {
+  const std::vector<Piece> pieces = pieces_of(input_of(die()));
+  ASSERT_EQ(pieces.size(), 2U);
+  EXPECT_EQ(pieces[0].from.at("d_axial"), 0.0);
+  EXPECT_DOUBLE_EQ(pieces[0].change.at("d_axial"), 0.1);
+  EXPECT_EQ(pieces[0].steps, 10000.0);
+  EXPECT_DOUBLE_EQ(pieces[1].from.at("d_axial"), 0.1);
+  EXPECT_DOUBLE_EQ(pieces[1].change.at("d_axial"), -0.02);
+  EXPECT_EQ(pieces[1].steps, 2000.0);
+  EXPECT_EQ(pieces[1].change.at("d_lateral"), 0.0);
+}
+
+TEST(LammpsInput, FollowsAWallUnderAForceAlongItsCurve) {
+  const CheckedScenario scenario = mdr(Configuration::simple, {force_ramp(0.01), force_ramp(0.0)});
+  const std::vector<Piece> pieces = pieces_of(input_of(scenario));
+  EXPECT_GT(pieces.size(), 20U);
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    EXPECT_NEAR(pieces[i].from.at("d_axial"), pieces[i - 1].from.at("d_axial") + pieces[i - 1].change.at("d_axial"),
+                1e-15);
+    EXPECT_LE(std::abs(pieces[i].change.at("d_axial")), 1e-5 * pieces[i].steps * (1.0 + 1e-12));
+  }
+}
+
+TEST(LammpsInput, MovesWallsAsSeenFromAFreeCentre) {
+  CheckedScenario scenario =
+      between(mdr(Configuration::simple, {}),
+              {wall("floor", -Eigen::Vector3d::UnitZ()), wall("punch", Eigen::Vector3d::UnitZ(), path({0.2}))});
+  scenario.loading.centre_is_free = true;
+  const std::string input = input_of(scenario);
+  EXPECT_TRUE(contains(input, "variable m_floor_z equal 1*v_d_floor-v_centre_z\n")) << input;
+  EXPECT_TRUE(contains(input, "variable m_punch_z equal -1*v_d_punch-v_centre_z\n")) << input;
+  EXPECT_NEAR(pieces_of(input).back().from.at("centre_z") + pieces_of(input).back().change.at("centre_z"), -0.1, 1e-6);
+}
+
+TEST(LammpsInput, PutsAWallWithAGapAway) {
+  const std::string input = input_of(parse_scenario(k_late_wall_text, "late.toml"));
+  EXPECT_EQ(pieces_of(input).front().from.at("d_late"), -2e-5);
+  EXPECT_TRUE(contains(input, "region late plane 0.01 0 0 -1 0 0 side in move"));
+}
+
+TEST(LammpsInput, NamesWallsInLettersDigitsAndUnderscoresThatDiffer) {
+  CheckedScenario scenario = between(
+      hertz_scenario(Configuration::simple, {}),
+      {wall("a-b", Eigen::Vector3d::UnitX(), path({0.01})), wall("a_b", -Eigen::Vector3d::UnitX(), path({0.02})),
+       wall("c+", Eigen::Vector3d::UnitY()), wall("c-", -Eigen::Vector3d::UnitY())});
+  const std::string input = input_of(scenario);
+  std::set<std::string> names;
+  const std::regex region("region (\\S+) plane");
+  for (std::sregex_iterator i(input.begin(), input.end(), region); i != std::sregex_iterator(); ++i) {
+    EXPECT_TRUE(std::regex_match((*i)[1].str(), std::regex("\\w+")));
+    EXPECT_TRUE(names.insert((*i)[1]).second) << (*i)[1];
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"a_b", "a_b_", "cp", "cm"}));
+}
+
+TEST(LammpsInput, NamesTheLawWithTheMaterial) {
+  EXPECT_TRUE(
+      contains(input_of(die()), "pair_coeff * * mdr 1 0.3 0.02 0 0 0 tangential linear_nohistory 0 0 damping mdr 1\n"));
+  EXPECT_TRUE(
+      contains(input_of(parse_scenario(k_hertz_text, "hertz.toml")),
+               "pair_coeff * * hertz/material 5e+10 0 0.22 tangential linear_nohistory 0 0 damping velocity\n"));
+}
+
+TEST(LammpsInput, SaysWhatLammpsComputesOtherwise) {
+  EXPECT_TRUE(contains(input_of(die()), "# LAMMPS multiplies the force of a wall by 1 + exp(10.7 d/R0 - 10)"));
+}
+
+TEST(LammpsLaw, RefusesModelsAndOptionsWithoutACounterpart) {
+  const auto reason = [](const CheckedScenario& scenario) {
+    return refusal<std::invalid_argument>([&] { return lammps_law_of(scenario); });
+  };
+  EXPECT_EQ(reason(read_scenario(MONOGRAIN_SOURCE_DIR "/scenarios/semimech.toml")),
+            "LAMMPS has no contact law with the equations of model semimech, only of hertz and mdr");
+  EXPECT_EQ(reason(with(die(), "radius_rule", "gated")), "LAMMPS computes mdr with radius_rule = 'yielded' only");
+  EXPECT_EQ(reason(with(die(), "elastic_profile", "parabola")),
+            "LAMMPS computes mdr with elastic_profile = 'ellipse' only");
+}
+
+/// LAMMPS itself, where it is installed with its package GRANULAR.
+TEST(LammpsInput, GivesTheForcesOfHertzInLammps) {
+  if (std::system("command -v lmp > /dev/null 2>&1") != 0) GTEST_SKIP() << "lmp is not installed";
+  const TemporaryFolder folder;
+  CheckedScenario scenario = between(
+      hertz_scenario(Configuration::simple, {}),
+      {wall("floor", Eigen::Vector3d(0, -1, -2)), wall("punch", Eigen::Vector3d(0, 1, 2), path({0.02, 0.005, 0.03}))});
+  scenario.loading.centre_is_free = true;
+  write_text(folder.path() / "in", input_of(scenario));
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 lmp -in in > out 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << read_text(folder.path() / "out");
+  const Table forces = read_csv(folder.path() / "forces.csv");
+  const std::vector<double> displacement = forces.column("punch.displacement[m]");
+  const std::vector<double> punch = forces.column("punch.force[N]");
+  const std::vector<double> floor = forces.column("floor.force[N]");
+  ASSERT_GT(displacement.size(), 50U);
+  const double stiffness = 4.0 / 3.0 / (1.0 - std::pow(scenario.material.at("poisson_ratio"), 2));
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    // Half of the displacement is the centre's.
+    EXPECT_NEAR(punch[i], stiffness * std::pow(0.5 * displacement[i], 1.5), 1e-7);
+    EXPECT_NEAR(floor[i], punch[i], 1e-7);
+  }
+}
+
+}  // namespace
+}  // namespace monograin
