@@ -7,8 +7,9 @@ cover little of the surface.
 In a run, the elastic sphere, the core and the other walls act as well. Between two walls, the displacement of a wall is
 smaller than the overlap by (g(0) + g(pi)) F/(E R0), which is 0.232 F/(E R0) for nu = 0.3. With this term, the force at a
 displacement agrees with that of a run within 1 % up to 0.25 R0 for E/Y = 6.25, 0.11 R0 for 20, 0.06 R0 for 50 and 0.03 R0 for
-200, where the core begins to yield. During unloading from 0.02 R0, the force and the contact radius at a displacement
-differ from those of a run by up to 0.3 % and 3 % of their largest values for E/Y = 200, and by 0.2 % and 0.2 % for 50.
+200, where the core begins to yield. During unloading from 0.02 R0, the force at a displacement differs from that of a
+run by up to 0.3 % of its largest value for E/Y = 200 and 0.1 % for 50. The contact radius differs by 1.1 % and 0.2 %
+while the force is above a hundredth of the largest, and by more just before contact is lost.
 
 Source: model ``cel``, a law of this workbench; its theory page, section "One contact".
 """
