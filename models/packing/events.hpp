@@ -12,7 +12,7 @@ namespace monograin::packing {
 
 /// Yielding of the particles during compaction: two packing fractions, and whether the packing has passed them.
 struct Yielding {
-  double softening = 0.0;        ///< Phi above which the plastic packing is softer than the elastic one
+  double softening = 0.0;        ///< Phi above which the plastic packing bears less stress than the elastic one
   double full_plasticity = 0.0;  ///< Phi above which all particles have yielded
   bool is_softer = false;
   bool is_full = false;

@@ -145,8 +145,8 @@ struct Branch {
 
 [[nodiscard]] Branch growing_branch(const Law& law, Measure measure);
 
-/// Phi above which the plastic packing is softer than the elastic one: sigma_e = sigma_y (1 + H/E). Just above jamming
-/// the plastic packing is stiffer. Infinite if it never becomes softer.
+/// Phi above which the plastic packing bears less stress than the elastic one: sigma_e = sigma_y (1 + H/E). Just above
+/// jamming the plastic packing bears more. Infinite if it never bears less.
 [[nodiscard]] double softening(const Law& law);
 
 /// Phi on a branch at which the measure has this value, to round-off.

@@ -95,7 +95,7 @@ constexpr std::array k_regimes{
 
 constexpr std::array k_events{
     Term{"jamming", "the packing begins to bear stress, or comes loose"},
-    Term{"plastic-softening", "from here on the plastic packing is softer than the elastic one"},
+    Term{"plastic-softening", "from here on the plastic packing bears less stress than the elastic one"},
     Term{"fully-plastic", "the plastic fraction reaches 1; the stress has a kink"},
     Term{"full", "no pores are left (Phi = 1); a run that would go on stops"},
     Term{"limit", "the prescribed strain or stress cannot grow any further"},
@@ -112,7 +112,7 @@ constexpr std::array<string_view, 7> k_domain{
     "stress jumps there from 0 to 0.0108 MPa",
     "the strain has its greatest value before Phi = 1 (published: 0.2028 at Phi = 0.9918), the stress may; strain or "
     "stress control ends there",
-    "plastic particles: compaction only; just above jamming the plastic packing is stiffer than the elastic one",
+    "plastic particles: compaction only; just above jamming the plastic packing bears more stress than the elastic one",
     "consistent coupling: stress and strain fall by less than a millionth just above Phi_c before they grow; under "
     "strain or stress control a packing that stands there gives way to where they grow",
     "coordination law: Z_c, Z_1 and Phi_1 are assumed (isostatic frictionless discs, 6 contacts at Phi = 1)",
