@@ -19,8 +19,8 @@ namespace monograin::nonlocal {
 /// correction.
 enum class Influence { half_space, sphere };
 
-/// Outward normal displacement per unit force at an angle from it (eq. 18). Negative below 70 to 85 degrees, depending
-/// on nu: a close neighbour pushes the surface away from the wall; -infinity as theta -> 0.
+/// Outward normal displacement per unit force at an angle from it (eq. 18). Negative below 88 (nu = 0) to 71 degrees
+/// (nu = 1/2): a close neighbour pushes the surface away from the wall; -infinity as theta -> 0.
 [[nodiscard]] double half_space_influence(double poisson_ratio, double theta) noexcept;
 
 /// Outward normal displacement of a sphere per unit force at an angle from it, without rigid translation: exact sum

@@ -71,7 +71,7 @@ constexpr std::array<string_view, 8> k_domain{
     "works best for nearly incompressible material, where errors of the half-space cancel: under hydrostatic "
     "compression the compliance is off by 1 % at nu = 0.48 and by -26 % at nu = 0.3",
     "more terms are no better everywhere: between two walls, against finite elements of rubber, four are better than "
-    "one up to 0.3 R0 and worse beyond (force -15 against -3 % at 0.45 R0)",
+    "one up to 0.36 R0 and worse beyond (force -15 against -3 % at 0.45 R0)",
     "the closed contact radius is off from its integral by a quarter of the correction at a = R0/2 and 90 degrees",
     "a force-controlled wall, also at zero force, follows the surface and closes a gap at once",
     "a free centre that only idle contacts keep from moving has no determined position, and their contacts no "
