@@ -48,7 +48,7 @@ constexpr std::array<string_view, 8> k_domain{
     "fitted to finite elements of E/Y 6.25 to 200; a warning below",
     "fitted to two walls up to 0.5 R0, a closed die up to 0.47 R0 and six walls up to 0.19 R0; a warning beyond 0.5 R0",
     "axial forces within 1 to 7 % (rms) of finite elements, lateral forces of a die within 6 to 17 %; at worst: the "
-    "end of a die beyond 0.44 R0 (+16 %), walls that come after others (15 %), unloading where pores have closed (25 "
+    "end of a die beyond 0.44 R0 (+15 %), walls that come after others (15 %), unloading where pores have closed (25 "
     "%)",
     "walls at least 40 degrees apart: the influence of neighbours is that of a point force",
     "up to where the contacts cover 85 % of the surface (column coverage up to 1.7; stop)",
