@@ -54,11 +54,10 @@ double contact_guard(const Particle& p, int kind, std::size_t i, double xi, doub
       return branch.opening_guard(p.law(), growth, is_idle(p, i) ? overlap + resolution(p) : overlap);
     case k_dent_touched:
       return branch.opening_guard(p.law(), growth, overlap);
-    default:
-      // With a free centre the guard is negative at a touch. Otherwise a wall that the centre leaves and meets again at
-      // once would not cross zero.
-      return p.centre().is_free() ? overlap - k_same_overlap : overlap;
   }
+  // k_made: with a free centre the guard is negative at a touch. Otherwise a wall that the centre leaves and meets
+  // again at once would not cross zero.
+  return p.centre().is_free() ? overlap - k_same_overlap : overlap;
 }
 
 double edge_guard(const Particle& p, int kind, std::size_t i, double xi, double overlap) {
@@ -251,9 +250,8 @@ double tension_guard(const Particle& p, int kind, std::size_t i, const Motion& n
       return (pulls ? rate : std::abs(rate)) + k_steady_force;
     case k_tension_falls:
       return rate - k_steady_force;
-    default:
-      return rate + k_steady_force;
   }
+  return rate + k_steady_force;  // k_tension_rises
 }
 
 double retreat_guard(Particle& p, std::size_t i, double xi, std::span<const double> y, const Motion& now) {
@@ -273,7 +271,7 @@ double lost_guard(const Particle& p, std::size_t i, double xi) {
 double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, double xi, std::span<const double> y,
                    const Motion& now) {
   const std::size_t i = guard.list_index();
-  switch (guard.kind) {
+  switch (static_cast<GuardKind>(guard.kind)) {
     case k_growth_on:
     case k_growth_off:
       return growth_drive(p, now);
@@ -309,9 +307,13 @@ double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, dou
     case k_peel:
     case k_pull_off:
       return edge_guard(p, guard.kind, i, xi, p.contact(i).overlap);
-    default:
+    case k_yield:
+    case k_reload:
+    case k_made:
+    case k_dent_touched:
       return contact_guard(p, guard.kind, i, xi, p.contact(i).overlap);
   }
+  return k_nan;
 }
 
 }  // namespace

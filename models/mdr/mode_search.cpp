@@ -104,7 +104,7 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
   std::optional<DomainEnd> end;
   for (const Guard& guard : fired) {
     if (is_void(guard, now)) continue;
-    switch (guard.kind) {
+    switch (static_cast<GuardKind>(guard.kind)) {
       case k_growth_on:
       case k_growth_off:
         decided = guard.kind == k_growth_on;  // resolve() logs it
@@ -124,7 +124,17 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
       case k_centre_reached:
         if (const auto limit = end_of(guard, caps, log)) end = limit;
         break;
-      default:
+      case k_yield:
+      case k_reload:
+      case k_made:
+      case k_dent_touched:
+      case k_lost:
+      case k_retreat:
+      case k_turn:
+      case k_peel:
+      case k_follow:
+      case k_pull_off:
+      case k_unstable:
         others_fired = apply_transition(guard, y, now, log) || others_fired;
         break;
     }
@@ -179,40 +189,43 @@ bool ModeSearch::is_void(const Guard& guard, const Motion& now) const {
       const double passed = p_.is_force_controlled(i) ? k_passed_by_force : k_passed;
       return unloading_fraction(branch.shape(p_.law(), p_.at().growth, overlap), overlap) > passed;
     }
-    default:
-      return false;
   }
+  return false;
 }
 
 /// Applies the transition of a guard that changes contacts, and logs it.
 /// @return whether the growth has to be decided anew
 bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const Motion& now, std::vector<Event>& log) {
   const std::size_t i = guard.list_index();
+  const Event event{guard.name, guard.index};
   switch (guard.kind) {
     case k_yield:
       p_.set_branch(i, p_.branch(i).yielded(p_.law(), p_.at().growth));
       has_yielded_under_force_ = has_yielded_under_force_ || p_.is_force_controlled(i);
+      log.push_back(event);
       break;
     case k_reload:
       p_.set_branch(i, p_.branch(i).reloaded());
+      log.push_back(event);
       break;
     case k_made:
     case k_dent_touched:
       p_.set_branch(i, p_.branch(i).made());
-      log.push_back({guard.name, guard.index});
+      log.push_back(event);
       balance_touch(p_, i, true, log);
-      return true;
+      break;
     case k_lost:
       p_.lose(i);
-      log.push_back({guard.name, guard.index});
+      log.push_back(event);
       balance_touch(p_, i, false, log);
-      return true;
+      break;
     case k_follow:
       p_.set_branch(i, p_.branch(i).with_edge({}));
+      log.push_back(event);
       break;
     case k_retreat:
       start_unloading(i, guard.name, log);
-      return true;
+      break;
     case k_turn:
       // At a fold the rate passes through infinity: the centre loses its support, and the edge has not reversed.
       if (may_peel_off(p_) && centre_stiffness(p_).value < k_at_fold)
@@ -220,32 +233,33 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
       else
         stick(i, log);
       has_turned_[i] = true;
-      return true;
+      break;
     case k_peel:
-      // A contact that moves together with much stiffer ones has a rate of few digits. A rate below k_at_rest is
-      // round-off, not a motion.
-      if (edge_rate(p_, i, now) >= -k_at_rest || std::abs(overlap_rate(p_, i, now)) <= k_at_rest) {
-        // An edge that has just turned sticks at the verge of peeling and leaves it with the square of its
-        // displacement. Round-off has fired the guard and would fire it again; setting the edge back prevents that.
-        const Image at = p_.branch(i).image(p_.law(), p_.at().growth, p_.contact(i).overlap);
-        const double round_off = edge_round_off(p_, i) * at.by_overlap;
-        p_.set_branch(i, p_.branch(i).with_edge(p_.branch(i).edge.set_back(at.indenter, round_off)));
-        return false;
-      }
-      start_peeling(i, y, log);
-      return true;
+      return peel_or_set_back(i, y, now, log);
     case k_pull_off:
       if (p_.branch(i).edge.peels()) separate(i, y, log);
-      return true;
+      break;
     case k_unstable:
       // No contact is left to separate if the peeling one has already pulled off at this instant.
       if (const auto weakest = weakest_contact(p_)) separate(*weakest, y, log);
-      return true;
-    default:
-      return false;
+      break;
   }
-  log.push_back({guard.name, guard.index});
   return true;
+}
+
+/// Tears the springs at a sticking edge, unless round-off has fired the guard: a contact that moves together with much
+/// stiffer ones has a rate of few digits, and a rate below k_at_rest is no motion. Such an edge has just turned and
+/// leaves the verge of peeling with the square of its displacement; it is set back, or its guard would fire again.
+/// @return whether the springs tear
+bool ModeSearch::peel_or_set_back(std::size_t i, std::span<double> y, const Motion& now, std::vector<Event>& log) {
+  if (edge_rate(p_, i, now) < -k_at_rest && std::abs(overlap_rate(p_, i, now)) > k_at_rest) {
+    start_peeling(i, y, log);
+    return true;
+  }
+  const Image at = p_.branch(i).image(p_.law(), p_.at().growth, p_.contact(i).overlap);
+  const double round_off = edge_round_off(p_, i) * at.by_overlap;
+  p_.set_branch(i, p_.branch(i).with_edge(p_.branch(i).edge.set_back(at.indenter, round_off)));
+  return false;
 }
 
 std::optional<DomainEnd> ModeSearch::end_of(const Guard& guard, ContactCaps& caps, std::vector<Event>& log) {
@@ -267,9 +281,10 @@ std::optional<DomainEnd> ModeSearch::end_of(const Guard& guard, ContactCaps& cap
                         stiffness_over_initial(p_, i)}};
     case k_volume:
       return DomainEnd{event, {Limit::half_volume, -1, "V/V0", 0.5}};
-    default:
+    case k_centre_reached:
       return centre_reached(guard.index);
   }
+  return std::nullopt;
 }
 
 /// True if the force of a contact that pulls passes through an extremum where the guard has fired. The guard also fires

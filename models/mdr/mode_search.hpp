@@ -67,6 +67,7 @@ class ModeSearch {
 
   [[nodiscard]] bool is_void(const Guard& guard, const Motion& now) const;
   bool apply_transition(const Guard& guard, std::span<double> y, const Motion& now, std::vector<Event>& log);
+  bool peel_or_set_back(std::size_t i, std::span<double> y, const Motion& now, std::vector<Event>& log);
   [[nodiscard]] std::optional<DomainEnd> end_of(const Guard& guard, ContactCaps& caps, std::vector<Event>& log);
   [[nodiscard]] bool is_extremum(const Guard& guard, const Motion& now) const;
 
