@@ -155,7 +155,7 @@ class IndependentContacts final : public HybridSystem {
   }
   void all_rates(double xi, std::span<const double> y, std::span<double> dy) override {
     rates(xi, y, dy);
-    if (centre_) centre_->write_rates(law_, contacts_, xi, y, dy);
+    if (centre_) centre_->write_rates(state(xi, y), dy);
   }
 
   void residual(double xi, std::span<const double> y, std::span<const double> dy, std::span<double> res) override {
@@ -205,7 +205,7 @@ class IndependentContacts final : public HybridSystem {
       const double target = guards_.target(g);
       const std::size_t i = guard.list_index();
       if (depends_on_centre(i)) {
-        values[g] = centre_->guard_value(law_, contacts_, i, guard.kind, target, xi, y, velocity);
+        values[g] = centre_->guard_value(state(xi, y), guard, target, velocity);
         continue;
       }
       // The length of the ramp is the scale, so that guards of a small overlap have all their digits.
@@ -223,7 +223,7 @@ class IndependentContacts final : public HybridSystem {
       std::optional<DomainEnd> end;
       if (guard.kind == k_made)
         c.make(law_, true, log);
-      else if (guard.kind == k_lost && !(depends_on_centre(i) && centre_->is_still_pressed(law_, contacts_, i, xi, y)))
+      else if (guard.kind == k_lost && !(depends_on_centre(i) && centre_->is_still_pressed(state(xi, y), i)))
         c.lose(law_, log, approach_by_centre(i, y));
       else if (guard.kind == k_retreat)
         c.retreat(law_, approach(i, xi, y), guard.name, log, approach_by_centre(i, y));
@@ -334,7 +334,7 @@ class IndependentContacts final : public HybridSystem {
   /// centre towards this wall.
   [[nodiscard]] double approach(std::size_t i, double xi, std::span<const double> y) const {
     const double d = contacts_[i].displacement(law_, xi, coordinate(i, y));
-    return centre_ ? centre_->approach(law_, contacts_[i], i, d, y) : d;
+    return centre_ ? centre_->approach(state(xi, y), i, d) : d;
   }
 
   /// Coordinate of a contact; 0 for a class that never takes a force, and has none.
@@ -348,6 +348,9 @@ class IndependentContacts final : public HybridSystem {
     return depends_on_centre(i) ? d + approach_by_centre(i, y) : d;
   }
 
+  [[nodiscard]] typename Centre::State state(double xi, std::span<const double> y) const {
+    return {law_, contacts_, xi, y};
+  }
   /// True for a contact whose displacement depends on where a free centre is.
   [[nodiscard]] bool depends_on_centre(std::size_t i) const noexcept {
     return centre_.has_value() && !contacts_[i].is_force_controlled();
@@ -363,10 +366,10 @@ class IndependentContacts final : public HybridSystem {
   [[nodiscard]] double power(std::size_t i, double xi, std::span<const double> y, const typename Contact::Slope& now,
                              const FreeCentre::Vector& velocity) const {
     if (!centre_) return contacts_[i].power(law_, xi, now);
-    return centre_->power(law_, contacts_[i], i, xi, y, now, velocity);
+    return centre_->power(state(xi, y), i, now, velocity);
   }
   [[nodiscard]] FreeCentre::Vector centre_velocity(double xi, std::span<const double> y) {
-    return centre_ ? centre_->velocity(law_, contacts_, xi, y) : FreeCentre::Vector::Zero();
+    return centre_ ? centre_->velocity(state(xi, y)) : FreeCentre::Vector::Zero();
   }
   /// Decides the mode around a free centre.
   /// @param fired  guards that have just fired, and so have decided about their contacts
@@ -376,16 +379,15 @@ class IndependentContacts final : public HybridSystem {
     const auto is_decided = [&](std::size_t i) {
       return std::ranges::any_of(fired, [&](std::size_t g) { return guards_.list()[g].list_index() == i; });
     };
-    return centre_->find(
-        law_, contacts_, xi, y, is_decided, [this](std::size_t i) { return is_seen(i); }, log);
+    return centre_->find({law_, contacts_, xi, y, log}, is_decided, [this](std::size_t i) { return is_seen(i); });
   }
 
   // --- columns
 
   /// Numbers of a contact in a row, in SI.
-  /// @param d        displacement of the contact, or of the leader that it follows
-  /// @param approach_by_centre  by how much a free centre has moved towards the wall
-  [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d, double approach_by_centre) {
+  /// @param d          displacement of the contact, or of the leader that it follows
+  /// @param by_centre  by how much a free centre has moved towards the wall
+  [[nodiscard]] VisibleContact visible(std::size_t i, double xi, double d, double by_centre) {
     const Contact& c = contacts_[i];
     if (followers_.follows(i)) {
       VisibleContact shown = visible_follower(law_, contacts_[followers_.leader()], d);
@@ -393,7 +395,7 @@ class IndependentContacts final : public HybridSystem {
       return units_.in_si(shown);
     }
     VisibleContact shown = visible_contact(law_, c, xi, d);
-    shown.displacement = shown.overlap - approach_by_centre;
+    shown.displacement = shown.overlap - by_centre;
     return units_.in_si(shown);
   }
 
@@ -402,7 +404,7 @@ class IndependentContacts final : public HybridSystem {
     guards_.clear();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (depends_on_centre(i)) {
-        centre_->arm_guards(law_, contacts_[i], i, xi, y, guards_);
+        centre_->arm_guards(state(xi, y), i, guards_);
       } else if (!followers_.follows(i)) {
         arm_wall(law_, contacts_[i], i, guards_);
       }

@@ -248,7 +248,7 @@ class WallContact {
     touches_ = has_touched_ = true;
     if (is_seen) log.push_back({made_event(law), index_});
   }
-  void lose(Law& law, std::vector<Event>& log, double approach_by_centre = 0.0) {
+  void lose(Law& law, std::vector<Event>& log, double approach_by_centre) {
     touches_ = false;
     resting_ = law.opening(branch_) - approach_by_centre;
     log.push_back({"contact-lost", index_});
@@ -291,7 +291,7 @@ class WallContact {
     return "contact-made";
   }
 
-  /// Contact on the part of its primary branch to which a displacement or a force takes it, within the end of the law.
+  /// Contact on its primary branch after every boundary below the larger of a displacement and a force.
   [[nodiscard]] static WallContact pressed_to(Law& law, double displacement, double force) {
     WallContact c(0, 0.0);
     c.touches_ = true;

@@ -23,6 +23,24 @@ class CentreMode {
   using Contact = WallContact<Law>;
   using Vector = FreeCentre::Vector;
 
+  /// A law and its contacts at a state.
+  struct State {
+    const Law& law;
+    std::span<const Contact> contacts;
+    double xi;
+    std::span<const double> y;
+
+    [[nodiscard]] State later(double by) const { return {law, contacts, xi + by, y}; }
+  };
+  /// A law, its contacts and the log of their events where a mode begins.
+  struct Beginning {
+    Law& law;
+    std::span<Contact> contacts;
+    double xi;
+    std::span<const double> y;
+    std::vector<Event>& log;
+  };
+
   /// Appends the unknowns of the centre.
   /// @param reach  largest displacement that is expected
   CentreMode(std::span<const ContactClass> classes, double reach, std::vector<Unknown>& unknowns)
@@ -45,27 +63,27 @@ class CentreMode {
   }
   /// Approach of wall and particle, the displacement that a law takes.
   /// @param d  displacement of the wall; of a touching wall under force control, the approach itself
-  [[nodiscard]] double approach(const Law& law, const Contact& c, std::size_t i, double d,
-                                std::span<const double> y) const {
-    const double opening = law.opening(c.branch());
+  [[nodiscard]] double approach(const State& at, std::size_t i, double d) const {
+    const Contact& c = at.contacts[i];
+    const double opening = at.law.opening(c.branch());
+    const double by_centre = approach_by_centre(i, at.y);
     if (c.is_force_controlled()) {
       // An open wall without load stays where it was left, until the particle pushes it.
-      return c.touches() ? d : std::min(d + approach_by_centre(i, y), opening);
+      return c.touches() ? d : std::min(d + by_centre, opening);
     }
-    const double overlap = d + approach_by_centre(i, y) - opening;
+    const double overlap = d + by_centre - opening;
     const bool is_idle = c.touches() && std::abs(overlap) <= FreeCentre::k_bearing_overlap;
     return is_idle ? opening : opening + overlap;
   }
   /// Writes the position of the centre that balances the forces.
   void move(const Law& law, std::span<const Contact> contacts, double xi, std::span<double> y) {
     if (free_directions() == 0) return;
-    write_position(centre_.equilibrium(Instant(law, contacts, xi), roles_, rest_, position(y)), y);
+    write_position(centre_.equilibrium(Instant({law, contacts, xi, y}), roles_, rest_, position(y)), y);
   }
   /// Writes the rates of the centre, with which integrators begin: difference quotients, not singular at first touch.
-  void write_rates(const Law& law, std::span<const Contact> contacts, double xi, std::span<const double> y,
-                   std::span<double> dy) {
-    const Vector now = position(y);
-    const Vector then = centre_.equilibrium(Instant(law, contacts, xi + ahead_), roles_, rest_, now);
+  void write_rates(const State& at, std::span<double> dy) {
+    const Vector now = position(at.y);
+    const Vector then = centre_.equilibrium(Instant(at.later(ahead_)), roles_, rest_, now);
     for (std::size_t k = 0; k < free_directions(); ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       dy[slot_ + k] = (then[axis] - now[axis]) / ahead_;
@@ -75,23 +93,23 @@ class CentreMode {
   /// of the centre towards it.
   /// @param now       slope of the contact's coordinate
   /// @param velocity  velocity of the centre
-  [[nodiscard]] double power(const Law& law, const Contact& c, std::size_t i, double xi, std::span<const double> y,
-                             const typename Contact::Slope& now, const Vector& velocity) const {
+  [[nodiscard]] double power(const State& at, std::size_t i, const typename Contact::Slope& now,
+                             const Vector& velocity) const {
+    const Contact& c = at.contacts[i];
     if (c.is_force_controlled()) {
-      const double force = c.prescribed_force(xi);
-      return force > 0.0 ? c.power(law, xi, now) - force * centre_.approach_by_centre(i, velocity) : 0.0;
+      const double force = c.prescribed_force(at.xi);
+      return force > 0.0 ? c.power(at.law, at.xi, now) - force * centre_.approach_by_centre(i, velocity) : 0.0;
     }
-    const double d = approach(law, c, i, c.drive().value(xi), y);
-    return c.bears(law, d) ? law.force(c.branch(), d) * c.drive().rate() : 0.0;
+    const double d = approach(at, i, c.drive().value(at.xi));
+    return c.bears(at.law, d) ? at.law.force(c.branch(), d) * c.drive().rate() : 0.0;
   }
   /// Velocity of the centre.
-  [[nodiscard]] Vector velocity(const Law& law, std::span<const Contact> contacts, double xi,
-                                std::span<const double> y) {
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const Contact& c = contacts[i];
+  [[nodiscard]] Vector velocity(const State& at) {
+    for (std::size_t i = 0; i < at.contacts.size(); ++i) {
+      const Contact& c = at.contacts[i];
       rates_[i] = c.touches() || !c.is_force_controlled() ? c.drive().rate() : 0.0;
     }
-    return centre_.velocity(Instant(law, contacts, xi), roles_, rates_, position(y));
+    return centre_.velocity(Instant(at), roles_, rates_, position(at.y));
   }
 
   // --- the mode
@@ -114,19 +132,22 @@ class CentreMode {
   /// @return the reason to stop, if a contact reaches the end of its law
   /// @throws DomainError if no mode is consistent
   template <class IsDecided, class IsSeen>
-  std::optional<DomainEnd> find(Law& law, std::span<Contact> contacts, double xi, std::span<const double> y,
-                                IsDecided&& is_decided, IsSeen&& is_seen, std::vector<Event>& log) {
+  std::optional<DomainEnd> find(const Beginning& begin, IsDecided&& is_decided, IsSeen&& is_seen) {
+    const auto& [law, contacts, xi, y, log] = begin;
+    const State at{law, contacts, xi, y};
+    const State ahead = at.later(ahead_);
     rest_ = position(y);
     // Each contact changes a few times at most; beyond that, contacts alternate.
     for (std::size_t round = 0; round <= 4 * contacts.size() + 8; ++round) {
       Vector then = rest_;
-      centre_.find_roles(Instant(law, contacts, xi), Instant(law, contacts, xi + ahead_), then, roles_);
+      centre_.find_roles(Instant(at), Instant(ahead), then, roles_);
       bool has_changed = false;
       for (std::size_t i = 0; i < contacts.size(); ++i) {
         Contact& c = contacts[i];
         if (c.is_force_controlled() || is_decided(i)) continue;
-        Change change{.now = c.drive().value(xi) + centre_.approach_by_centre(i, rest_) - law.opening(c.branch()),
-                      .then = overlap_as_touching(law, contacts, i, xi + ahead_, then),
+        Change change{.now = overlap(at, i, rest_),
+                      .then = overlap_as_touching(ahead, i, then),
+                      .approach_by_centre = centre_.approach_by_centre(i, rest_),
                       .turning = xi == 0.0 ? "load-reversal" : "retreat"};
         find_touch(law, c, change, is_seen(i), log);
         if (const auto end = find_branch(law, c, change, log, has_changed)) return end;
@@ -140,40 +161,38 @@ class CentreMode {
 
   /// Arms the guards of a contact. The target of a boundary is a displacement, those of the others are overlaps. A wall
   /// within k_touch of touching has to leave that band on the other side, so that its guard does not begin at a root.
-  void arm_guards(const Law& law, const Contact& c, std::size_t i, double xi, std::span<const double> y,
-                  Guards& guards) const {
-    const double overlap = c.drive().value(xi) + approach_by_centre(i, y) - law.opening(c.branch());
+  void arm_guards(const State& at, std::size_t i, Guards& guards) const {
+    const Contact& c = at.contacts[i];
+    const double present = overlap(at, i, position(at.y));
     const auto add = [&](GuardKind kind, int direction, std::string_view name, double target) {
       guards.add({.kind = kind, .index = static_cast<int>(i), .direction = direction, .name = name}, target);
     };
     if (!c.touches()) {
-      add(k_made, 1, c.made_event(law), overlap >= -k_touch ? k_touch : 0.0);
+      add(k_made, 1, c.made_event(at.law), present >= -k_touch ? k_touch : 0.0);
       return;
     }
-    add(k_lost, -1, "contact-lost", overlap <= k_touch ? -k_touch : 0.0);
-    if (const auto ahead = c.next(law)) add(k_boundary, 1, ahead->event, ahead->position);
+    add(k_lost, -1, "contact-lost", present <= k_touch ? -k_touch : 0.0);
+    if (const auto ahead = c.next(at.law)) add(k_boundary, 1, ahead->event, ahead->position);
     if (c.is_on_primary_branch() && roles_[i] == Role::bearing) add(k_retreat, -1, "retreat", 0.0);
   }
   /// True if a contact whose guard has found it lost still has an overlap. In a trial state, the round-off of the
   /// largest forces may have opened a contact whose overlap is near the resolution.
-  [[nodiscard]] bool is_still_pressed(const Law& law, std::span<const Contact> contacts, std::size_t i, double xi,
-                                      std::span<const double> y) {
-    return overlap_as_touching(law, contacts, i, xi, position(y)) > k_touch;
+  [[nodiscard]] bool is_still_pressed(const State& at, std::size_t i) {
+    return overlap_as_touching(at, i, position(at.y)) > k_touch;
   }
   /// Value of a guard that arm_guards() has listed.
   /// @param velocity  velocity of the centre; only guards of retreat use it
-  [[nodiscard]] double guard_value(const Law& law, std::span<const Contact> contacts, std::size_t i, int kind,
-                                   double target, double xi, std::span<const double> y, const Vector& velocity) {
-    const WallDrive& drive = contacts[i].drive();
-    if (kind == k_retreat) {
-      const double overlap = drive.value(xi) + approach_by_centre(i, y) - law.opening(contacts[i].branch());
-      if (overlap <= k_steady_overlap) return k_at_rest / reach_;  // positive: does not fire
+  [[nodiscard]] double guard_value(const State& at, const Guard& guard, double target, const Vector& velocity) {
+    const std::size_t i = guard.list_index();
+    const WallDrive& drive = at.contacts[i].drive();
+    if (guard.kind == k_retreat) {
+      if (overlap(at, i, position(at.y)) <= k_steady_overlap) return k_at_rest / reach_;  // positive: does not fire
       // The rate of a contact at rest is round-off.
       const double fastest = std::max(velocity.norm(), fastest_wall_);
       return (drive.rate() + centre_.approach_by_centre(i, velocity) + k_at_rest * fastest) / reach_;
     }
-    if (kind == k_boundary) return (drive.value(xi) + approach_by_centre(i, y) - target) / reach_;
-    return (overlap_as_touching(law, contacts, i, xi, position(y)) - target) / reach_;
+    if (guard.kind == k_boundary) return (drive.value(at.xi) + approach_by_centre(i, at.y) - target) / reach_;
+    return (overlap_as_touching(at, i, position(at.y)) - target) / reach_;
   }
 
  private:
@@ -196,7 +215,7 @@ class CentreMode {
   /// The walls around the centre at one instant.
   class Instant final : public CentreWalls {
    public:
-    Instant(const Law& law, std::span<const Contact> contacts, double xi) : law_(law), contacts_(contacts), xi_(xi) {}
+    explicit Instant(const State& at) : law_(at.law), contacts_(at.contacts), xi_(at.xi) {}
     [[nodiscard]] std::optional<double> prescribed_force(std::size_t i) const override {
       const Contact& c = contacts_[i];
       return c.is_force_controlled() ? std::optional(c.prescribed_force(xi_)) : std::nullopt;
@@ -227,7 +246,8 @@ class CentreMode {
   struct Change {
     double now = 0.0;
     double then = 0.0;
-    std::string_view turning{};  ///< event of beginning to unload
+    double approach_by_centre = 0.0;  ///< where the mode begins
+    std::string_view turning{};       ///< event of beginning to unload
   };
 
   [[nodiscard]] std::size_t free_directions() const noexcept {
@@ -271,18 +291,22 @@ class CentreMode {
     if (!(push.norm() > k_round_off * sum)) return std::nullopt;
     return carried_to_support(push, walls, touches, rest);
   }
+  /// Overlap of a contact with the centre at c; negative for a gap.
+  [[nodiscard]] double overlap(const State& at, std::size_t i, const Vector& c) const {
+    const Contact& contact = at.contacts[i];
+    return contact.drive().value(at.xi) + centre_.approach_by_centre(i, c) - at.law.opening(contact.branch());
+  }
   /// Overlap of a contact; negative for a gap. The overlap of an idle wall stays zero while the wall pushes the centre:
   /// for that, gives the overlap that it would have if it did not push.
-  [[nodiscard]] double overlap_as_touching(const Law& law, std::span<const Contact> contacts, std::size_t i, double xi,
-                                           const Vector& c) {
-    if (roles_[i] == Role::idle) return centre_.unpushed_overlap(i, Instant(law, contacts, xi), roles_, rest_, c);
-    return contacts[i].drive().value(xi) + centre_.approach_by_centre(i, c) - law.opening(contacts[i].branch());
+  [[nodiscard]] double overlap_as_touching(const State& at, std::size_t i, const Vector& c) {
+    if (roles_[i] != Role::idle) return overlap(at, i, c);
+    return centre_.unpushed_overlap(i, Instant(at), roles_, rest_, c);
   }
   /// Makes or loses a contact whose wall and particle just meet, by its overlap a little later.
   static void find_touch(Law& law, Contact& c, const Change& change, bool is_seen, std::vector<Event>& log) {
     const bool will_touch = change.then > k_no_change;
     if (will_touch && !c.touches() && change.now >= -k_touch) c.make(law, is_seen, log);
-    if (!will_touch && c.touches() && change.now <= k_touch) c.lose(law, log);
+    if (!will_touch && c.touches() && change.now <= k_touch) c.lose(law, log, change.approach_by_centre);
   }
   /// Turns a contact that is about to unload, or takes it beyond the boundaries that it is about to pass.
   /// @return the reason to stop, if the contact reaches the end of its law
