@@ -9,6 +9,9 @@
 
 namespace monograin::contacts {
 
+/// A wall this near to the centre of the particle (over R0) has reached it.
+inline constexpr double k_least_distance = 1e-3;
+
 /// Linear ramp of a wall's displacement over R0, or of its force over the law's unit, during one step. All its values
 /// are exact: no integrator computes them.
 class WallDrive {

@@ -1,5 +1,5 @@
-/// An elastic particle between rigid walls: Hertz's law at every contact. Lengths in R0, stresses
-/// in E*. Source: Hertz (1882); Zunker and Kamrin (2024), eq. 25.
+/// An elastic particle between rigid walls: Hertz's law at every contact. Lengths in R0, stresses in E*. The formulas
+/// stand in elastic/hertz.hpp. Source: Hertz (1882); Zunker and Kamrin (2024), eq. 25.
 #pragma once
 
 #include <array>
@@ -16,8 +16,6 @@ struct WallLaw {
   struct Branch {};  ///< unloading retraces loading
   static constexpr std::array<std::string_view, 2> k_regimes{"open", "elastic"};
   static constexpr bool k_is_tested = true;  ///< tests compare its functions, so that no run has to
-  /// Distance of a wall from the particle's centre, over R0, at which the wall counts as having reached the centre.
-  static constexpr double k_least_distance = 1e-3;
 
   double composite_modulus = 1.0;  ///< E* [Pa], > 0
 
@@ -33,7 +31,8 @@ struct WallLaw {
   }
   [[nodiscard]] int regime(Branch, bool touches) const noexcept { return touches ? 1 : 0; }
   [[nodiscard]] contacts::Boundary next(Branch) const noexcept {
-    return {1.0 - k_least_distance, "limit", LimitPoint{Limit::wall_at_centre, -1, "distance/R0", k_least_distance}};
+    constexpr double distance = contacts::k_least_distance;
+    return {1.0 - distance, "limit", LimitPoint{Limit::wall_at_centre, -1, "distance/R0", distance}};
   }
   [[nodiscard]] std::vector<SurfacePoint> surface(Branch, double d) const {
     return mdr::surface_of({.indenter = mdr::elastic_indenter(mdr::ElasticProfile::parabola, 1.0),

@@ -105,7 +105,7 @@ void GuardSet::arm(Particle& p, ContactCaps& caps, double xi, std::span<const do
   }
   if (p.law().material.bulk_compliance > 0.0) list_.push_back({k_volume, -1, -1, "volume-limit"});
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (p.is_force_controlled(i) || 1.0 - p.drive(i).end() < 2.0 * k_least_distance || p.centre().is_free()) {
+    if (p.is_force_controlled(i) || 1.0 - p.drive(i).end() < 2.0 * contacts::k_least_distance || p.centre().is_free()) {
       list_.push_back({k_centre_reached, static_cast<int>(i), -1, "limit"});
     }
   }
@@ -290,7 +290,7 @@ double guard_value(Particle& p, const ContactCaps& caps, const Guard& guard, dou
     case k_caps:
       return caps.guard(i);
     case k_centre_reached:
-      return 1.0 - p.contact(i).approach - k_least_distance;
+      return 1.0 - p.contact(i).approach - contacts::k_least_distance;
     case k_retreat:
       return retreat_guard(p, i, xi, y, now);
     case k_turn:

@@ -62,8 +62,6 @@ inline constexpr double k_least_slope = 1e-3;
 /// A plastic contact under a prescribed force has reached its largest force when its stiffness is this share of that of
 /// a shallow contact. Below this stiffness, the overlap would magnify errors of the radius a hundredfold and more.
 inline constexpr double k_last_stiffness = 1e-2;
-/// A wall this near to the centre of the particle (over R0) has reached it.
-inline constexpr double k_least_distance = 1e-3;
 
 /// Guard of a contact that does not depend on its adhesive edge: touch, loss, yield or reload.
 /// @param overlap  at which the guard is evaluated, not necessarily the present overlap

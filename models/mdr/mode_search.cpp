@@ -73,7 +73,7 @@ double nearness_of_yield(const Particle& p, std::size_t i) noexcept {
 }  // namespace
 
 DomainEnd centre_reached(int contact_class) {
-  return {{"limit", contact_class}, {Limit::wall_at_centre, contact_class, "distance/R0", k_least_distance}};
+  return {{"limit", contact_class}, {Limit::wall_at_centre, contact_class, "distance/R0", contacts::k_least_distance}};
 }
 
 void ModeSearch::begin(const Particle& particle) {

@@ -54,9 +54,9 @@ class CentreWalls {
 class FreeCentre {
  public:
   using Vector = CentreLines::Vector;
-  /// Smallest overlap (over R0) of a contact that bears; below, the contact is idle. It is a tenth of k_resolution: a
-  /// contact that closes by as much as that bears.
-  static constexpr double k_bearing_overlap = 1e-13;
+  /// Smallest overlap (over R0) of a contact that bears; below, the contact is idle. A contact that closes by as much
+  /// as k_resolution bears.
+  static constexpr double k_bearing_overlap = 0.1 * k_resolution;
   explicit FreeCentre(std::span<const ContactClass> classes);
 
   /// Number of free directions, 0 to 3.
