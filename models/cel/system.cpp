@@ -74,7 +74,7 @@ System::System(const ModelInput& input, std::vector<ContactClass> classes, const
       classes_(std::move(classes)),
       particle_(particle_of(input, classes_, reach)),
       unknowns_(unknowns_of(particle_, classes_)),
-      columns_(true, true, k_regime_words, classes_, centre_is_free_,
+      columns_({.free_centre = centre_is_free_}, k_regime_words, classes_,
                std::array<Observable, 2>{{{"core_strain", "-", {}}, {"coverage", "-", {}}}}),
       work_slot_(particle_.layout().size()),
       last_(unknowns_.size()),

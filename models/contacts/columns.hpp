@@ -82,15 +82,21 @@ inline void write_centre_columns(const Eigen::Vector3d& displacement, std::span<
 /// Columns of a particle: its energies, others of its own, then those of every class.
 class Columns {
  public:
-  Columns(bool has_stored_energy, bool has_contact_area, std::span<const std::string_view> regimes,
-          std::span<const ContactClass> classes, bool has_centre = false, std::span<const Observable> others = {})
-      : energies_(has_stored_energy ? k_energy_observables.size() : 1), has_contact_area_(has_contact_area) {
+  /// Parts of a row that only some particles have.
+  struct Parts {
+    bool stored_energy = true;
+    bool contact_area = true;
+    bool free_centre = false;
+  };
+  Columns(const Parts& parts, std::span<const std::string_view> regimes, std::span<const ContactClass> classes,
+          std::span<const Observable> others = {})
+      : energies_(parts.stored_energy ? k_energy_observables.size() : 1), has_contact_area_(parts.contact_area) {
     for (const std::string_view name : std::span(k_energy_observables).first(energies_)) {
       observables_.push_back({std::string(name), "J", {}});
     }
     observables_.insert(observables_.end(), others.begin(), others.end());
-    for (const ContactClass& c : classes) add_contact_columns(c.name, regimes, observables_, has_contact_area);
-    if (has_centre) add_centre_columns(observables_);
+    for (const ContactClass& c : classes) add_contact_columns(c.name, regimes, observables_, parts.contact_area);
+    if (parts.free_centre) add_centre_columns(observables_);
   }
 
   [[nodiscard]] std::span<const Observable> observables() const noexcept { return observables_; }

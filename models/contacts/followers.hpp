@@ -9,7 +9,8 @@
 
 namespace monograin::contacts {
 
-/// Followers among the contact classes; all have the same leader, the first contact that follows none.
+/// Followers among the contact classes; all have the same leader, the first contact that follows none. A law must leave
+/// one.
 template <class Law>
 class Followers {
  public:

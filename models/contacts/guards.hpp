@@ -48,17 +48,15 @@ void arm_wall(const Law& law, const WallContact<Law>& c, std::size_t i, Guards& 
                 .is_monotone = true},
                target);
   };
-  if (direction == 0) return;
+  const auto opening = [&] { return c.is_force_controlled() ? 0.0 : law.opening(c.branch()); };
   if (direction > 0 && c.touches()) {
     const auto ahead = c.next(law);
     const double target = ahead ? c.prescribed_at(law, *ahead) : 0.0;
     if (ahead && c.passes(target)) add(k_boundary, ahead->event, target);
-  } else if (c.passes_opening(law) && c.touches() == (direction < 0)) {
-    const double opening = c.is_force_controlled() ? 0.0 : law.opening(c.branch());
-    if (direction < 0)
-      add(k_lost, "contact-lost", opening);
-    else
-      add(k_made, c.made_event(law), opening);
+  } else if (direction > 0 && c.passes_opening(law)) {
+    add(k_made, c.made_event(law), opening());
+  } else if (direction < 0 && c.touches() && c.passes_opening(law)) {
+    add(k_lost, "contact-lost", opening());
   }
 }
 

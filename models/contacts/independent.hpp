@@ -71,7 +71,7 @@ class IndependentContacts final : public HybridSystem {
         slots_(classes_.size()),
         approaches_(classes_.size()),
         followers_(law_, classes_),
-        columns_(stores_energy(), k_has_contact_area<Law>, Law::k_regimes, classes_, settings.centre_is_free),
+        columns_({stores_energy(), k_has_contact_area<Law>, settings.centre_is_free}, Law::k_regimes, classes_),
         scales_(scales_of(law_, settings.reach.displacement / units_.length, settings.reach.force / units_.force)) {
     for (std::size_t i = 0; i < classes_.size(); ++i) {
       if (!classes_[i].takes_force) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -20,9 +21,9 @@ class LawCheck {
   explicit LawCheck(const Law& law) : law_(law) {}
 
   /// Checks force, slope, work and inverse of a branch.
-  /// @param is_first  a force that is not finite is a contradiction; further on, the law may have ended
+  /// @param must_be_finite  false: a law whose force is not finite there has ended, which is no contradiction
   /// @return the contradiction, a sentence; empty if there is none
-  [[nodiscard]] std::string at(const Branch& b, double d, bool is_first) const {
+  [[nodiscard]] std::string at(const Branch& b, double d, bool must_be_finite) const {
     const double opening = law_.opening(b);
     const double depth = d - opening;
     const double h = std::max(k_step * depth, k_least_step * std::abs(d));
@@ -30,7 +31,7 @@ class LawCheck {
     const double force = law_.force(b, d);
     const double growth = (law_.force(b, d + h) - law_.force(b, d - h)) / (2.0 * h);
     if (!std::isfinite(force) || !std::isfinite(growth)) {
-      return is_first ? "force(b, d) is " + text(force) + place + "; expected a finite number" : std::string();
+      return must_be_finite ? "force(b, d) is " + text(force) + place + "; expected a finite number" : std::string();
     }
     if (!(force > 0.0)) {
       return "force(b, d) is " + text(force) + place + ", and the contact opens at " + text(opening) +
@@ -104,6 +105,7 @@ class LawCheck {
 template <class Law>
 [[nodiscard]] std::string contradiction_in(const Law& law, double reach) {
   constexpr double k_first_reach = 0.01;
+  constexpr std::array k_shares{0.2, 0.5, 0.9};  // of the reach: near its ends differences lose digits, or leave it
   const typename Law::Branch branch{};
   const auto count = static_cast<int>(Law::k_regimes.size());
   for (const bool touches : {false, true}) {
@@ -120,7 +122,7 @@ template <class Law>
   }
   const LawCheck check(law);
   bool is_first = true;
-  for (const double share : {0.2, 0.5, 0.9}) {
+  for (const double share : k_shares) {
     const double d = opening + share * (end - opening);
     try {
       if (std::string found = check.at(branch, d, is_first); !found.empty()) return found;

@@ -49,7 +49,7 @@ template <auto law_of>
   constexpr bool may_end = requires(const Law& law, const typename Law::Branch& b) { law.next(b); };
   if (model.events.empty()) model.events = std::span(k_events).first(k_events.size() - (may_end ? 0 : 1));
   model.has_free_centre = true;
-  model.has_contact_area = requires(const Law& law, const typename Law::Branch& b) { law.contact(b, 1.0); };
+  model.has_contact_area = k_has_contact_area<Law>;
   model.bind = [](const ModelInput& input, std::vector<ContactClass> classes,
                   const Reach& reach) -> std::unique_ptr<HybridSystem> {
     const Law law = law_of(input);

@@ -41,11 +41,11 @@ template <class Law>
 [[nodiscard]] Scales scales_of(Law& law, double displacement, double force) {
   using Contact = WallContact<Law>;
   using Branch = typename Law::Branch;
-  const bool is_said = displacement > 0.0 || force > 0.0;
-  const Contact last = Contact::pressed_to(law, is_said ? displacement : k_infinity, force);
+  const bool is_known = displacement > 0.0 || force > 0.0;
+  const Contact last = Contact::pressed_to(law, is_known ? displacement : k_infinity, force);
   const auto ahead = last.next(law);
   const double end = ahead && ahead->limit ? ahead->position : k_infinity;
-  double reach = is_said ? displacement : std::isfinite(end) ? end : 1.0;
+  double reach = is_known ? displacement : std::isfinite(end) ? end : 1.0;
   if (force > 0.0) reach = std::max(reach, reach_under(law, last, force, end));
   reach = std::min(reach, end);
 

@@ -30,7 +30,7 @@ double regime_word(const ContactBranch& branch) noexcept {
 System::System(std::shared_ptr<const Setup> setup)
     : setup_(std::move(setup)),
       unknowns_(setup_->unknowns()),
-      columns_(true, true, k_regime_words, setup_->classes, setup_->settings.centre_is_free),
+      columns_({.free_centre = setup_->settings.centre_is_free}, k_regime_words, setup_->classes),
       now_{.particle = Particle(setup_), .caps = ContactCaps(*setup_)},
       search_(now_.particle),
       trial_(unknowns_.size()) {
