@@ -129,14 +129,15 @@ Contact contact_by(const Material& material, const Dent& dent, double l, double 
   return at;
 }
 
-/// (cel-advance): c = -[(1 + chi) y - (1 - chi) (sqrt(y^2 + w^2) - w)]/2 with y = l - 1.
+/// (cel-advance): c = -[(1 + chi) y - (1 - chi) (sqrt(y^2 + w^2) - w)]/2 with y = l - 1. Away from y = 0,
+/// c is near -y where the core shrinks (y < 0) and near -chi y where it bulges.
 Advance advance_of(double growth) noexcept {
   const double root = std::sqrt(growth * growth + fit::w * fit::w);
-  constexpr double same = -0.5 * (1.0 + fit::chi);
-  constexpr double other = 0.5 * (1.0 - fit::chi);
+  constexpr double odd = -0.5 * (1.0 + fit::chi);
+  constexpr double even = 0.5 * (1.0 - fit::chi);
   const double per_root = 1.0 / root;
-  return {same * growth + other * (root - fit::w), same + other * growth * per_root,
-          other * fit::w * fit::w * per_root * per_root * per_root};
+  return {odd * growth + even * (root - fit::w), odd + even * growth * per_root,
+          even * fit::w * fit::w * per_root * per_root * per_root};
 }
 
 std::vector<Coupling> couplings_of(double poisson_ratio, std::span<const ContactClass> classes) {

@@ -90,10 +90,6 @@ struct Contact {
                                         double u) noexcept {
   return contact_by(material, dent, l, m, u, false);
 }
-[[nodiscard]] inline Contact contact_under(const Material& material, const Dent& dent, double l, double m,
-                                           double F) noexcept {
-  return contact_by(material, dent, l, m, F, true);
-}
 
 /// Advance c of a wall into room that the core makes, and its first two derivatives by the support distance l.
 struct Advance {

@@ -21,18 +21,16 @@ constexpr double k_alike = 1e-6;
 /// Largest coverage to which the law is fitted: half the contact area over pi R0^2, which is 2 for the whole surface.
 constexpr double k_most_coverage = 1.7;
 
-/// Names and directions of the guards, in the order of their kinds.
+/// Names and directions of the guards.
 struct Kind {
+  GuardKind kind;
   std::string_view name;
   int direction;
 };
-constexpr std::array<Kind, 7> k_kinds{{{"contact-made", 1},
-                                       {"contact-lost", -1},
-                                       {"yield", 1},
-                                       {"load-reversal", -1},
-                                       {"limit", -1},
-                                       {"limit", -1},
-                                       {"limit", -1}}};
+constexpr std::array k_kinds{Kind{k_made, "contact-made", 1}, Kind{k_lost, "contact-lost", -1},
+                             Kind{k_yield, "yield", 1},       Kind{k_reversal, "load-reversal", -1},
+                             Kind{k_fold, "limit", -1},       Kind{k_coverage, "limit", -1},
+                             Kind{k_away, "limit", -1}};
 
 /// Elastic displacement of a contact at the first trial instant ahead at which it is clearly open or closed, or else 0.
 /// Trials begin with the motion at this instant.
@@ -86,7 +84,7 @@ double value_of(const Guard& guard, const Particle& p, const Motion& motion, dou
   const std::size_t i = guard.list_index();
   const ClassState& c = p.classes[i];
   const double dent_rate = motion.rates()[p.layout().dent(i)];
-  switch (guard.kind) {
+  switch (static_cast<GuardKind>(guard.kind)) {
     case k_made:
       return (c.contact.u - p.slack(i)) / p.depth();
     case k_lost:
@@ -99,15 +97,16 @@ double value_of(const Guard& guard, const Particle& p, const Motion& motion, dou
       return motion.margin() - k_margin_of_fold;
     case k_away:
       return p.centre.room(xi, p.position());
-    default:
+    case k_coverage:
       return k_most_coverage - p.coverage().Om;
   }
+  return k_nan;
 }
 
 }  // namespace
 
-Guard& GuardSet::add(int kind, int index) {
-  const Kind& of = k_kinds[static_cast<std::size_t>(kind)];
+Guard& GuardSet::add(GuardKind kind, int index) {
+  const Kind& of = *std::ranges::find(k_kinds, kind, &Kind::kind);
   list_.push_back({.kind = kind, .index = index, .direction = of.direction, .name = of.name});
   return list_.back();
 }
@@ -137,7 +136,7 @@ void GuardSet::values(const Particle& p, const Motion& motion, double xi, std::s
 
 std::optional<DomainEnd> GuardSet::limit_met(const Particle& p, const Motion& motion, double xi) const {
   for (const Guard& guard : list_) {
-    if (guard.kind >= k_fold && value_of(guard, p, motion, xi) <= 0.0) return end_at(guard, p, xi);
+    if (is_limit(guard) && value_of(guard, p, motion, xi) <= 0.0) return end_at(guard, p, xi);
   }
   return std::nullopt;
 }

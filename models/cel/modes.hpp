@@ -24,12 +24,16 @@ class GuardSet {
   [[nodiscard]] std::optional<DomainEnd> limit_met(const Particle& p, const Motion& motion, double xi) const;
 
  private:
-  Guard& add(int kind, int index);
+  Guard& add(GuardKind kind, int index);
 
   std::vector<Guard> list_;
 };
 
-/// End of a run at a limit, whose guard is k_fold or a later kind.
+/// True for the guard of a limit of the law, where a run ends.
+[[nodiscard]] inline bool is_limit(const Guard& guard) noexcept {
+  return guard.kind == k_fold || guard.kind == k_coverage || guard.kind == k_away;
+}
+/// End of a run at a limit, whose guard has fired.
 [[nodiscard]] DomainEnd end_at(const Guard& guard, const Particle& p, double xi);
 
 /// Decides the mode from here on, and logs contacts that are made or lost, or begin or stop to flow.

@@ -14,9 +14,9 @@ namespace {
 constexpr double k_first_stabilization = 0.5;
 constexpr double k_nearest_flow = 1e-9;
 
-/// Speed of the walls that touch, over the sum of that and the speed of their contacts: 0 at a fold. Where a force
-/// begins, contacts have no stiffness yet, which is no fold.
-double slowness(const Particle& p, std::span<const double> rates) noexcept {
+/// Distance from a fold, without its sign: speed of the walls that touch, over the sum of that and the speed of their
+/// contacts; 0 at a fold. Where a force begins, contacts have no stiffness yet, which is no fold.
+double distance_from_fold(const Particle& p, std::span<const double> rates) noexcept {
   double speed = 0.0;
   double fastest = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -53,7 +53,7 @@ double Motion::evaluate(Particle& p, double xi, std::span<const double> y) {
   drawn_rates_.resize(p.layout().size());
   Eigen::Map<Eigen::VectorXd>(drawn_rates_.data(), size) = solutions_.rowwise().sum();
   p.write_core_rates(drawn_rates_);
-  margin_ = sign * slowness(p, rates_);
+  margin_ = sign * distance_from_fold(p, rates_);
   power_ = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const ClassState& c = p.classes[i];

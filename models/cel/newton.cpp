@@ -23,7 +23,7 @@ constexpr double k_stalled = 1e-14;
 
 /// Largest residual of the state that was evaluated, as a displacement. A yield function counts times the elastic
 /// displacement, because it has the relative accuracy of that; a net force times the displacement over the
-/// force of a contact that bears the largest force.
+/// force of a contact that bears the largest force F, which by Hertz goes with F^(-1/3).
 double Newton::error(const Particle& p, double xi) {
   const Layout& layout = p.layout();
   p.residual(xi, {residual_.data(), layout.core()});

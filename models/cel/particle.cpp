@@ -81,6 +81,7 @@ std::optional<std::vector<std::size_t>> Particle::leave_walls(std::span<double> 
     arms.row(row) = centre.lines().mean_normal(left[k]).head(static_cast<Eigen::Index>(layout_.directions)).transpose();
     distances[row] = -classes[left[k]].contact.u - gap;
   }
+  // The displacement of the centre that leaves a gap at all of them, if there is one.
   const Eigen::VectorXd move = arms.completeOrthogonalDecomposition().solve(distances);
   if ((arms * move - distances).lpNorm<Eigen::Infinity>() > 0.5 * gap) return std::nullopt;  // walls on both sides
   for (std::size_t k = 0; k < layout_.directions; ++k) y[layout_.centre(k)] += move[static_cast<Eigen::Index>(k)];

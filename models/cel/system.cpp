@@ -158,8 +158,9 @@ std::optional<double> System::closed_quadrature(double xi, std::span<const doubl
 /// Sets the ramp of a wall for a step; the state is evaluated.
 void System::set_ramp(std::size_t i, const Ramp& ramp, std::span<double> y) {
   ClassState& c = particle_.classes[i];
-  const bool takes_force = ramp.control == Control::force && (ramp.start > 0.0 || ramp.end > 0.0);
-  c.is_released = ramp.control == Control::force && !takes_force;
+  const bool is_by_force = ramp.control == Control::force;
+  const bool presses_by_force = is_by_force && (ramp.start > 0.0 || ramp.end > 0.0);
+  c.is_released = is_by_force && !presses_by_force;
   if (c.is_released) {
     if (c.is_force_controlled() || c.contact.u >= -particle_.slack(i))
       particle_.release_wall(i, y);
@@ -167,8 +168,8 @@ void System::set_ramp(std::size_t i, const Ramp& ramp, std::span<double> y) {
       c.hold(c.displacement);
     return;
   }
-  if (takes_force != c.is_force_controlled()) y[i] = takes_force ? c.contact.F : c.contact.u;
-  c.drive = contacts::WallDrive(ramp, takes_force ? force_unit_ : length_);
+  if (presses_by_force != c.is_force_controlled()) y[i] = presses_by_force ? c.contact.F : c.contact.u;
+  c.drive = contacts::WallDrive(ramp, presses_by_force ? force_unit_ : length_);
 }
 
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
@@ -217,11 +218,11 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
   const std::size_t first = log.size();
   for (const std::size_t g : fired) {
     const Guard& guard = guards.emplace_back(guards_.list()[g]);
-    if (guard.kind >= k_fold) {
+    if (is_limit(guard)) {
       log.push_back({guard.name});
       return end_at(guard, particle_, xi);
     }
-    if (guard.kind > k_lost) continue;
+    if (guard.kind != k_made && guard.kind != k_lost) continue;
     const std::size_t i = guard.list_index();
     ClassState& c = particle_.classes[i];
     c.touches = guard.kind == k_made && !c.is_released;

@@ -6,6 +6,7 @@
 
 namespace monograin::cel {
 
+/// Eigen's PartialPivLU takes 3.4 (two equations) to 1.2 (twenty) times the instructions of this loop.
 double eliminate(RowMatrix& equations) {
   const Eigen::Index n = equations.rows();
   double sign = 1.0;
@@ -39,10 +40,10 @@ double eliminate(RowMatrix& equations) {
 
 void Tangent::set(const Particle& p, bool core_flows) {
   const Layout& layout = p.layout();
-  Om_ = layout.core();
-  Lam_ = Om_ + 1;
-  residual_by_.resize(Om_, Om_ + 2);
-  Om_by_.setZero(Om_ + 2);
+  om_column_ = layout.core();
+  lam_column_ = om_column_ + 1;
+  residual_by_.resize(om_column_, om_column_ + 2);
+  Om_by_.setZero(om_column_ + 2);
   l_by_flow_.setZero(p.size());
   pushes_by_flow_.setZero();
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -53,12 +54,12 @@ void Tangent::set(const Particle& p, bool core_flows) {
     if (!core_flows) continue;
     const double phi_l = -(c.phi() + c.advance.c_ll) * c.per_l;
     l_by_flow_[i] = p.l_by_flow(i);
-    Om_by_[Lam_] -= c.count * grown * per_square * c.per_l * l_by_flow_[i];
+    Om_by_[lam_column_] -= c.count * grown * per_square * c.per_l * l_by_flow_[i];
     pushes_by_flow_ += c.contact.F * phi_l * l_by_flow_[i] * c.spread;
   }
 
   moving_.clear();
-  flow_by_.setZero(Om_);
+  flow_by_.setZero(om_column_);
   for (std::size_t i = 0; i < p.size(); ++i) {
     add_kinematics(p, i);
     moving_.push_back(i);
@@ -77,10 +78,10 @@ void Tangent::set(const Particle& p, bool core_flows) {
   equations_.resize(n, n + 2);
   for (std::size_t row = 0; row < n; ++row) {
     const double* by = &residual_by_(moving_[row], 0);
-    const double by_Lam = by[Lam_] + by[Om_] * Om_by_[Lam_];
+    const double by_Lam = by[lam_column_] + by[om_column_] * Om_by_[lam_column_];
     for (std::size_t column = 0; column < n; ++column) {
       const std::size_t j = moving_[column];
-      equations_(row, column) = by[j] + by[Om_] * Om_by_[j] + by_Lam * flow_by_[j];
+      equations_(row, column) = by[j] + by[om_column_] * Om_by_[j] + by_Lam * flow_by_[j];
     }
     if (row < p.size() && p.classes[row].is_force_controlled())
       equations_.row(row) = Eigen::RowVectorXd::Unit(n + 2, row);
@@ -97,7 +98,7 @@ double Tangent::solve(const Eigen::MatrixX2d& right, Eigen::MatrixX2d& solutions
 }
 
 std::span<double> Tangent::new_row(std::size_t equation) noexcept {
-  const std::span row(&residual_by_(equation, 0), Lam_ + 1);
+  const std::span row(&residual_by_(equation, 0), lam_column_ + 1);
   std::ranges::fill(row, 0.0);
   return row;
 }
@@ -107,8 +108,8 @@ inline void Tangent::add(const Particle& p, std::size_t i, const Slopes& by, dou
                          std::span<double> row) const noexcept {
   row[i] += factor * by.coordinate;
   row[p.layout().dent(i)] += factor * by.zeta;
-  row[Om_] += factor * by.m * p.coverage().m_Om;
-  row[Lam_] += factor * by.l * l_by_flow_[i];
+  row[om_column_] += factor * by.m * p.coverage().m_Om;
+  row[lam_column_] += factor * by.l * l_by_flow_[i];
 }
 
 /// Adds the derivatives of (K).
@@ -126,11 +127,11 @@ void Tangent::add_kinematics(const Particle& p, std::size_t i) {
     add(p, j, other.contact.F_by, -coupling.G(root, coverage.shade), row);
     row[p.layout().dent(i)] -= c.dent.root_Gam_zeta * other.dent.root_Gam * by_root;
     row[p.layout().dent(j)] -= c.dent.root_Gam * other.dent.root_Gam_zeta * by_root;
-    row[Om_] -= coupling.by_shade(root) * coverage.shade_Om * F;
+    row[om_column_] -= coupling.by_shade(root) * coverage.shade_Om * F;
   }
   add(p, i, c.contact.u_by, 1.0, row);
   row[p.layout().dent(i)] += c.dent.h_zeta;
-  row[Lam_] += c.advance.c_l * l_by_flow_[i];
+  row[lam_column_] += c.advance.c_l * l_by_flow_[i];
   for (std::size_t k = 0; k < p.layout().directions; ++k)
     row[p.layout().centre(k)] = -p.centre.lines().mean_normal(i)[k];
 }
@@ -155,14 +156,14 @@ void Tangent::add_yield(const Particle& p, std::size_t i) {
     const ClassState& other = p.classes[j];
     add(p, j, other.contact.F_by, -other.phi() * contraction(f.by_pushes, other.spread), row);
   }
-  row[Lam_] -= f.by_flow;
+  row[lam_column_] -= f.by_flow;
 }
 
 /// Rate of a residual.
 double Tangent::rate_of(std::size_t equation, std::span<const double> rates) const noexcept {
   const double* by = &residual_by_(equation, 0);
-  double rate = rates[Om_] * (by[Lam_] + by[Om_] * Om_by_[Lam_]);
-  for (std::size_t j = 0; j < Om_; ++j) rate += rates[j] * (by[j] + by[Om_] * Om_by_[j]);
+  double rate = rates[om_column_] * (by[lam_column_] + by[om_column_] * Om_by_[lam_column_]);
+  for (std::size_t j = 0; j < om_column_; ++j) rate += rates[j] * (by[j] + by[om_column_] * Om_by_[j]);
   return rate;
 }
 

@@ -43,7 +43,7 @@ class Tangent {
   [[nodiscard]] double rate_of(std::size_t equation, std::span<const double> rates) const noexcept;
 
   // A row holds derivatives by the unknowns up to the core, by the coverage Om, and by the flow Lam.
-  std::size_t Om_ = 0, Lam_ = 0;  ///< last columns
+  std::size_t om_column_ = 0, lam_column_ = 0;  ///< the last two
   RowMatrix residual_by_;
   Eigen::VectorXd Om_by_;  ///< derivatives of Om by the unknowns, and by Lam at the end
   Eigen::VectorXd l_by_flow_;

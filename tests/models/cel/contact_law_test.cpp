@@ -53,7 +53,7 @@ constexpr Surround_offs k_surroundings[] = {{1.0, 1.0}, {0.7, 0.95}, {1.2, 1.3}}
 /// Elastic displacements from a light touch to the limit force, and a little beyond.
 std::vector<double> displacements_of(const Material& material, const Dent& dent, const Surround_offs& at) {
   const double H = contact_at(material, dent, at.l, at.m, 0.0).H;
-  const double limit = contact_under(material, dent, at.l, at.m, H).u;
+  const double limit = contact_by(material, dent, at.l, at.m, H, true).u;
   return {1e-6 * limit, 0.03 * limit, 0.4 * limit, limit, 1.1 * limit};
 }
 
@@ -97,7 +97,7 @@ TEST(CelContactReference, IsMetWithItsComplexStepDerivatives) {
     const auto value = [&](std::string_view column) { return table.at(row, *table.find(column)); };
     const Material material(1.0 / value("E_over_Y"), 0.3);
     const Dent dent = dent_of(material, value("zeta"));
-    const Contact at_limit = contact_under(material, dent, 1.0, 1.0, contact_at(material, dent, 1.0, 1.0, 0.0).H);
+    const Contact at_limit = contact_by(material, dent, 1.0, 1.0, contact_at(material, dent, 1.0, 1.0, 0.0).H, true);
     const auto expect = [&](std::string_view column, double actual) {
       // Next to yield the difference x = xi - xi_Y has lost six digits, which h and the derivatives inherit.
       const double lost = value("xi") / (value("xi") - material.xi_Y);
@@ -265,7 +265,7 @@ TEST(CelContact, HasTheDerivativesOfItsQuantities) {
     EXPECT_EQ(contact.u_by.coordinate, 1.0);
 
     const auto by_force = [&](const Dent& d, double l, double m, double x) {
-      return contact_under(material, d, l, m, x);
+      return contact_by(material, d, l, m, x, true);
     };
     const Contact under = by_force(dent, at.l, at.m, contact.F);
     expect_slopes(by_force, &Contact::u, under.u_by, material, dent, at, contact.F, "u");
@@ -286,7 +286,7 @@ TEST(CelContact, HasTheStiffnessOfAFlatPunchOfItsArea) {
 TEST(CelContact, HasItsLimitAreaAtItsLimitForce) {
   for_all_contacts([](const Material& material, const Dent& dent, const Surround_offs& at, double) {
     const double H = contact_at(material, dent, at.l, at.m, 0.0).H;
-    const Contact contact = contact_under(material, dent, at.l, at.m, H);
+    const Contact contact = contact_by(material, dent, at.l, at.m, H, true);
     EXPECT_EQ(contact.F_over_H, 1.0);
     EXPECT_LE(relative_error(contact.area, contact.alpha), 4 * k_epsilon);
     EXPECT_LE(relative_error(contact.alpha, std::sqrt(at.m) * std::pow(dent.zeta / at.l, 2)), 8 * k_epsilon);
@@ -297,7 +297,7 @@ TEST(CelContact, HasItsLimitAreaAtItsLimitForce) {
 TEST(CelContact, UnderAForceIsThatAtItsDisplacement) {
   for_all_contacts([](const Material& material, const Dent& dent, const Surround_offs& at, double u) {
     const Contact contact = contact_at(material, dent, at.l, at.m, u);
-    const Contact under = contact_under(material, dent, at.l, at.m, contact.F);
+    const Contact under = contact_by(material, dent, at.l, at.m, contact.F, true);
     EXPECT_LE(relative_error(under.u, u), 1e-14);
     EXPECT_LE(relative_error(under.area, contact.area), 1e-14);
     EXPECT_LE(relative_error(under.stored, contact.stored), 1e-14);
@@ -331,7 +331,7 @@ TEST(CelContact, IsAGapBelowFirstTouch) {
     EXPECT_EQ(contact.F_by.zeta, 0.0);
     EXPECT_GT(contact.H, 0.0);
   }
-  const Contact idle = contact_under(material, dent, 0.9, 0.95, 0.0);
+  const Contact idle = contact_by(material, dent, 0.9, 0.95, 0.0, true);
   EXPECT_EQ(idle.u, 0.0);
   EXPECT_EQ(idle.area, 0.0);
 }

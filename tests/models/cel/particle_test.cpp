@@ -92,7 +92,7 @@ struct RandomCase {
       y[layout.dent(i)] = zeta;
       const Dent dent = dent_of(material, zeta);
       const double H = contact_at(material, dent, 1.0, 1.0, 0.0).H;
-      y[i] = contact_under(material, dent, 1.0, 1.0, uniform(generator, 0.3, 1.0) * H).u;
+      y[i] = contact_by(material, dent, 1.0, 1.0, uniform(generator, 0.3, 1.0) * H, true).u;
     }
     for (std::size_t d = 0; d < layout.directions; ++d) y[layout.centre(d)] = uniform(generator, -0.02, 0.02);
     set_core(y, particle, classes, random_core(generator, classes), uniform(generator, 0.0, 0.4));
