@@ -41,6 +41,31 @@ struct GrowthBracket {
   }
 };
 
+/// A step of the growing radius by Newton's method. The centre takes to_balance + radius * by_radius with it.
+struct GrowthStep {
+  double radius = 0.0;
+  double defect = 0.0;  ///< of the volume balance, once the centre is in balance
+  CentreVector to_balance = CentreVector::Zero();
+  CentreVector by_radius = CentreVector::Zero();
+};
+
+/// Step from the state that was evaluated last.
+/// @throws std::domain_error where the free surface is used up
+GrowthStep newton_step(const Particle& p) {
+  const VolumeBalance& volume = p.at().volume;
+  GrowthStep step{.defect = volume.value - p.mode.frozen_balance};
+  double slope = volume.by_radius;
+  if (p.centre().is_free()) {
+    step.to_balance = p.centre().step();
+    step.by_radius = p.centre().by_radius();
+    slope += p.at().volume_by_centre.dot(step.by_radius);
+    step.defect += p.at().volume_by_centre.dot(step.to_balance);
+  }
+  if (!(slope > 0.0)) throw DomainError(Limit::free_surface_used_up);
+  step.radius = std::clamp(-step.defect / slope, -k_longest_step, k_longest_step);
+  return step;
+}
+
 }  // namespace
 
 void move_walls(const Particle& p, double xi, std::span<double> y) {
@@ -78,6 +103,7 @@ void complete(Particle& p, double xi, std::span<double> y) {
     if (!may_peel_off(p) || !leave_saddle(p, xi, y, is_balanced)) throw;
   }
   if (!may_peel_off(p)) return;
+  // If no equilibrium holds the centre, y stays at the saddle, where centre_stiffness_guard() fires.
   if (is_balanced) leave_saddle(p, xi, y, is_balanced);
   record_walls(p, xi, y);
 }
@@ -92,31 +118,20 @@ void grow(Particle& p, double xi, std::span<double> y) {
   for (int iteration = 0; iteration < k_most_steps; ++iteration) {
     move_walls(p, xi, y);
     p.evaluate(xi, y);
-    double slope = p.at().volume.by_radius;
-    double defect = p.at().volume.value - p.mode.frozen_balance;
-    CentreVector to_balance = CentreVector::Zero();
-    CentreVector by_radius = CentreVector::Zero();
-    if (p.centre().is_free()) {
-      to_balance = p.centre().step();
-      by_radius = p.centre().by_radius();
-      slope += p.at().volume_by_centre.dot(by_radius);
-      defect += p.at().volume_by_centre.dot(to_balance);
-    }
-    if (!(slope > 0.0)) throw DomainError(Limit::free_surface_used_up);
-    double step = std::clamp(-defect / slope, -k_longest_step, k_longest_step);
-    if (!p.centre().is_free()) step = bracket.step_within(y[k_growth], step, defect, last_step);
-    y[k_growth] += step;
-    const CentreVector centre_step = to_balance + step * by_radius;
+    GrowthStep step = newton_step(p);
+    if (!p.centre().is_free()) step.radius = bracket.step_within(y[k_growth], step.radius, step.defect, last_step);
+    y[k_growth] += step.radius;
+    const CentreVector centre_step = step.to_balance + step.radius * step.by_radius;
     if (count > 0) set_centre(y, count, centre_of(y, count) + centre_step);
-    const double size = std::max(std::abs(step), centre_step.norm());
+    const double size = std::max(std::abs(step.radius), centre_step.norm());
     if (size < last_step) return;
     // A step that is not much shorter than the last one, and below the resolution, is round-off. A centre that soft
     // contacts hold moves by more than that even where forces balance.
-    const bool is_balanced = std::abs(step) < k_resolution && p.centre().force().norm() <= p.force_round_off();
+    const bool is_balanced = std::abs(step.radius) < k_resolution && p.centre().force().norm() <= p.force_round_off();
     if (size >= 0.5 * step_size && (size < k_resolution || is_balanced)) return;
     step_size = size;
   }
-  throw DomainError(Limit::free_surface_used_up);
+  throw DomainError(Limit::no_solution, "the balance of volumes was not found");
 }
 
 }  // namespace monograin::mdr

@@ -17,7 +17,7 @@ void move_centre_and_walls(Particle& p, double xi, std::span<double> y);
 /// @throws std::domain_error where no balance is found
 void complete(Particle& p, double xi, std::span<double> y);
 /// Solves for the growing radius: the volume balance together with the balance of forces, by Newton's method.
-/// @throws std::domain_error where the free surface is used up: growth runs away, or the method does not converge
+/// @throws std::domain_error where the free surface is used up, so that growth runs away, or the method finds no radius
 void grow(Particle& p, double xi, std::span<double> y);
 
 }  // namespace monograin::mdr
