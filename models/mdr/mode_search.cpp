@@ -99,47 +99,16 @@ std::optional<DomainEnd> ModeSearch::apply(std::span<const Guard> fired, double 
                                            ContactCaps& caps, std::vector<Event>& log) {
   p_.at_state(xi, y);
   const Motion now = p_.motion(p_.mode.is_growing);
-  std::optional<bool> decided;
   bool others_fired = false;
   std::optional<DomainEnd> end;
   for (const Guard& guard : fired) {
     if (is_void(guard, now)) continue;
-    switch (static_cast<GuardKind>(guard.kind)) {
-      case k_growth_on:
-      case k_growth_off:
-        decided = guard.kind == k_growth_on;  // resolve() logs it
-        break;
-      case k_greatest_tension:
-      case k_least_tension:
-      case k_tension_falls:
-      case k_tension_rises:
-        if (is_extremum(guard, now)) log.push_back({guard.name, guard.index});
-        break;
-      case k_softened:
-      case k_caps:
-      case k_singular:
-      case k_covered:
-      case k_greatest_force:
-      case k_volume:
-      case k_centre_reached:
-        if (const auto limit = end_of(guard, caps, log)) end = limit;
-        break;
-      case k_yield:
-      case k_reload:
-      case k_made:
-      case k_dent_touched:
-      case k_lost:
-      case k_retreat:
-      case k_turn:
-      case k_peel:
-      case k_follow:
-      case k_pull_off:
-      case k_unstable:
-        others_fired = apply_transition(guard, y, now, log) || others_fired;
-        break;
-    }
+    if (const auto limit = end_of(guard, caps, log))
+      end = limit;
+    else
+      others_fired = apply_transition(guard, y, now, log) || others_fired;
   }
-  if (!others_fired) decided_growth_ = decided;
+  if (others_fired) decided_growth_.reset();
   if (end && (log.empty() || log.back().name != end->event.name)) log.push_back(end->event);
   return end;
 }
@@ -193,12 +162,30 @@ bool ModeSearch::is_void(const Guard& guard, const Motion& now) const {
   return false;
 }
 
-/// Applies the transition of a guard that changes contacts, and logs it.
-/// @return whether the growth has to be decided anew
+/// Applies the transition of a guard, and logs it; resolve() logs those of the growth.
+/// @return whether contacts have changed, so that the growth has to be decided anew
 bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const Motion& now, std::vector<Event>& log) {
   const std::size_t i = guard.list_index();
   const Event event{guard.name, guard.index};
-  switch (guard.kind) {
+  switch (static_cast<GuardKind>(guard.kind)) {
+    case k_growth_on:
+    case k_growth_off:
+      decided_growth_ = guard.kind == k_growth_on;
+      return false;
+    case k_greatest_tension:
+    case k_least_tension:
+    case k_tension_falls:
+    case k_tension_rises:
+      if (is_extremum(guard, now)) log.push_back(event);
+      return false;
+    case k_softened:
+    case k_caps:
+    case k_singular:
+    case k_covered:
+    case k_greatest_force:
+    case k_volume:
+    case k_centre_reached:
+      return false;  // end_of()
     case k_yield:
       p_.set_branch(i, p_.branch(i).yielded(p_.law(), p_.at().growth));
       has_yielded_under_force_ = has_yielded_under_force_ || p_.is_force_controlled(i);
@@ -262,6 +249,7 @@ bool ModeSearch::peel_or_set_back(std::size_t i, std::span<double> y, const Moti
   return false;
 }
 
+/// The reason to stop at the guard of a limit; none at other guards, and for caps that may intersect.
 std::optional<DomainEnd> ModeSearch::end_of(const Guard& guard, ContactCaps& caps, std::vector<Event>& log) {
   const Event event{guard.name, guard.index};
   const std::size_t i = guard.list_index();
