@@ -129,21 +129,8 @@ class IndependentContacts final : public HybridSystem {
     arm_guards(0.0, y);
   }
 
-  void complete(double xi, std::span<double> y) override {
-    if (unknowns_.size() == 1) return;  // the work is the only unknown
-    if (centre_) centre_->move(law_, contacts_, xi, y);
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (classes_[i].takes_force && !contacts_[i].is_integrated(law_))
-        y[slots_[i]] = contacts_[i].coordinate_next_to(law_, xi, y[slots_[i]]);
-    }
-  }
-  void solve(double xi, std::span<double> y) override {
-    if (unknowns_.size() == 1) return;  // the work is the only unknown
-    if (centre_) centre_->move(law_, contacts_, xi, y);
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      if (classes_[i].takes_force) y[slots_[i]] = contacts_[i].coordinate_next_to(law_, xi, y[slots_[i]]);
-    }
-  }
+  void complete(double xi, std::span<double> y) override { solve_for(xi, y, false); }
+  void solve(double xi, std::span<double> y) override { solve_for(xi, y, true); }
 
   void rates(double xi, std::span<const double> y, std::span<double> dy) override {
     const FreeCentre::Vector velocity = centre_velocity(xi, y);
@@ -302,6 +289,16 @@ class IndependentContacts final : public HybridSystem {
 
   using Centre = CentreMode<Law>;
 
+  /// Solves for the centre and for the coordinates of contacts.
+  /// @param with_integrated  false: not for coordinates that integrators advance
+  void solve_for(double xi, std::span<double> y, bool with_integrated) {
+    if (unknowns_.size() == 1) return;  // the work is the only unknown
+    if (centre_) centre_->move(law_, contacts_, xi, y);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      if (classes_[i].takes_force && (with_integrated || !contacts_[i].is_integrated(law_)))
+        y[slots_[i]] = contacts_[i].coordinate_next_to(law_, xi, y[slots_[i]]);
+    }
+  }
   /// @param work  over the force unit and R0
   [[nodiscard]] Energies energies(double work) {
     double stored = 0.0;
