@@ -64,7 +64,7 @@ Reach reach(const ModelInput& input, const Until& until) {
   if (until.is_of(Quantity::pressure))
     displacement = radius * std::pow(0.75 * std::numbers::pi * until.value / law.composite_modulus, 2);
   if (until.is_of(Quantity::force)) return {.displacement = displacement, .force = until.value};
-  const double overlap = displacement / radius;
+  const double overlap = displacement / radius;  // beyond 1 there is no force: the wall has reached the centre before
   return {.displacement = displacement, .force = overlap < 1.0 ? force_unit * law.force({}, overlap) : k_infinity};
 }
 

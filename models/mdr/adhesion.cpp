@@ -199,7 +199,7 @@ double critical_radius(const Indenter& indenter, const Adhesion& adhesion, Contr
       0.5 * factor * factor * pi * adhesion.surface_energy / adhesion.composite_modulus * flatness * flatness;
   const double parabola = std::cbrt(k * b * b);
   if (indenter.is_parabola()) return parabola;
-  // a^3 + k a^2 - k b^2 = 0: convex, with one positive root, below both of these.
+  // a^3 + k a^2 - k b^2 = 0: convex, with one positive root, below both of these. Boost 1.74 solves no cubics.
   double a = std::min(parabola, b);
   for (int iteration = 0; iteration < k_most_corrections && a > 0.0; ++iteration) {
     const double step = (a * a * a - k * (b - a) * (b + a)) / (a * (3.0 * a + 2.0 * k));

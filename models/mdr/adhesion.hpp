@@ -64,6 +64,7 @@ struct PeelState {
 [[nodiscard]] PeelState peel_state(const Indenter& indenter, const Adhesion& adhesion, double a) noexcept;
 
 /// Stable (outer) equilibrium of an edge under delta_1D; the critical state if delta_1D lies below that of pull-off.
+/// Runs take it from peeling_contact(), with derivatives; this form shows the accuracy of the edge by itself.
 /// @param critical_radius  critical_radius() of displacement control
 [[nodiscard]] PeelState peel_at_displacement(const Indenter& indenter, const Adhesion& adhesion, double critical_radius,
                                              double displacement_1d);

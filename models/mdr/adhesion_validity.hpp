@@ -3,7 +3,8 @@
 /// The surface of a strongly flattened particle is concave inside a ring of the radius r_peak, which the elliptic
 /// indenter is not; and no yielding in tension is accounted for at the edge. Both are harmless while the critical
 /// contact radius is large: a_c > r_peak and 2 a_c >= 15 r_Ip (F.7). The fits were made to two walls and a single
-/// particle. Of the fits, a run uses F.1 alone. Source: Zunker and Kamrin (2024), Appendices F.1 to F.3.
+/// particle. Of the fits, a run uses F.1 alone; F.2 and F.3 are there in the form that corrects their misprints.
+/// Source: Zunker and Kamrin (2024), Appendices F.1 to F.3.
 #pragma once
 
 #include "mdr/adhesion.hpp"

@@ -30,7 +30,8 @@ constexpr int k_most_sections = 40;
 // accurate to the root of the integration error.
 constexpr double k_alike = 1e-2;
 
-/// Searches between a and b for a point where the function is positive, by golden sections towards its maximum.
+/// Searches between a and b for a point where the function is positive, by golden sections towards its maximum. Ends at
+/// the first positive value; Boost's brent_find_minima() would go on to the maximum.
 /// @param best  in: a point between a and b with a larger value than both; out: the point with the largest value found
 /// @return the function value at best
 template <class Function>

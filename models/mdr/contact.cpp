@@ -168,6 +168,7 @@ double phi_at(double theta, double sine, double cosine) noexcept {
   return theta >= k_large_angle ? theta - sine * cosine : phi(theta);
 }
 
+// Boost's newton_raphson_iterate() takes 1.3 times the instructions.
 double inverse_phi(double value) noexcept {
   constexpr double k_last_angle_step = 1e-9;  // over theta; the next step of Newton's method is round-off
   double theta = std::cbrt(1.5 * value);      // phi = (2/3) theta^3 (1 - theta^2/5 + ...)

@@ -9,11 +9,12 @@ namespace monograin::mdr {
 
 /// d(delta_o)/dxi of a wall, towards the centre positive.
 [[nodiscard]] double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
-/// Inward rate of a wall over speed_scale(), of order one. Under force control, where this rate has no bound, a number
-/// from -1 to 1 with its sign: the rate of the prescribed force less that of the force that growth takes away, over the
-/// sum of their magnitudes.
+/// A number of order one with the sign of inward_rate(). With a prescribed force F, under which that rate has no bound,
+/// R' = growth rate and F_R = derivative of the force by R at a resting wall:
+///   under displacement control   inward_rate()/speed_scale()
+///   under force control          (F' - F_R R')/(|F'| + |F_R R'|)
 [[nodiscard]] double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
-/// Rate of the overlap, in the units of wall_rate().
+/// A number of order one with the sign of the overlap's rate, as wall_rate(); F_R is there that at a fixed overlap.
 [[nodiscard]] double overlap_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept;
 /// Rate of the quantity that defines the largest overlap: the overlap itself, or the approach of the wall with
 /// delta_max_rule = shifted.

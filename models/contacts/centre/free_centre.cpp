@@ -122,7 +122,8 @@ FreeCentre::Vector FreeCentre::flight(const CentreWalls& walls, std::span<const 
 }
 
 /// Share of a step that leads to about the minimum of the energy along it. The energy is convex, so that its slope
-/// grows along the step. The sums are then those of the position reached.
+/// grows along the step; bisection ends by that slope, where Boost's ends by the interval. The sums are then those of
+/// the position reached.
 double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role> roles, const Vector& c,
                                  const Vector& step) {
   const double first = net_force().dot(step);
