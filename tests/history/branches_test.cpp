@@ -56,6 +56,13 @@ TEST(Branches, TheSlopeIsThatOfTheFirstTwentieth) {
   EXPECT_DOUBLE_EQ(unloading_slope({{1.0, 0.5}, {10.0, 10.0}}), 0.0) << "a force that stays";
 }
 
+// The force goes like s^(3/2), with s = 1 at the reversal and ds = dx/0.2.
+TEST(Branches, TheSlopeOfACurveIsThatOfItsSecantOverTheFirstTwentieth) {
+  const auto unloading = unloadings(cycled(2.0, 0.6, {0.5}, 0.5, 20000)).front();
+  const double expected = 0.05 / (0.2 * (1.0 - std::pow(0.95, 2.0 / 3.0)));
+  EXPECT_NEAR(unloading_slope(unloading), expected, 1e-6 * expected);
+}
+
 TEST(Branches, TheResidualDisplacementIsWhereTheForceVanishes) {
   const auto unloading = unloadings(cycled(1.0, 0.6, {0.5}, 0.5)).front();
   EXPECT_NEAR(residual_displacement(unloading), 0.3, 1e-12) << "exact for the power 3/2";
@@ -92,6 +99,12 @@ TEST(Branches, ACurveThatDoesNotTurnBackThereHasNoUnloading) {
   EXPECT_NEAR(lines[0].peak_error, 0.0, 1e-12);
 }
 
+TEST(Branches, ReversalsWithinOnePercentAreEqual) {
+  const XyCurve reference = cycled(1.0, 0.6, {0.2}, 0.3);
+  EXPECT_FALSE(std::isnan(compare_branches(reference, cycled(1.0, 0.6, {0.2018}, 0.3)).front().slope));
+  EXPECT_TRUE(std::isnan(compare_branches(reference, cycled(1.0, 0.6, {0.2022}, 0.3)).front().slope));
+}
+
 TEST(Branches, ExcursionsComeBackUpToTheLargestX) {
   const auto found = excursions({{0, 2, 1, 1.5, 2, 3, 2.5, 2, 2.2, 2.1, 4}, {0, 8, 4, 5, 8, 9, 6, 3, 4, 4, 9}});
   ASSERT_EQ(found.size(), 2U);
@@ -115,6 +128,13 @@ TEST(Branches, BandsMeasureAUniformErrorAsItIs) {
   }
   EXPECT_DOUBLE_EQ(lines[0].reversal, 0.3);
   EXPECT_DOUBLE_EQ(lines[1].reversal, 0.5);
+}
+
+TEST(Branches, AReversalBetweenTwoBandsBelongsToTheLowerOne) {
+  const auto lines =
+      compare_bands(cycled(1.0, 0.6, {0.25}, 0.5), cycled(1.1, 0.6, {0.25}, 0.5), Values{0.05, 0.25, 0.5}, 0.0);
+  EXPECT_NEAR(lines[0].unloading, 0.1, 1e-9);
+  EXPECT_TRUE(std::isnan(lines[1].unloading));
 }
 
 TEST(Branches, BandsMeasureTheRowsOfTheReferenceThatAreLargeEnough) {

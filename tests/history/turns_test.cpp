@@ -62,6 +62,11 @@ TEST(TurningPoints, AreNotThoseOfNoise) {
   }
 }
 
+// The median of a million rows is known to 0.2 %.
+TEST(TurningPoints, HaveTheStandardDeviationOfNormalNoise) {
+  EXPECT_NEAR(noise_in(through({0, 1}, 1000000, 0.01)), 0.01, 5e-3 * 0.01);
+}
+
 TEST(TurningPoints, OfExactDataAreWhereTheirRowsAre) {
   const Values x = through({0, 2, 1.9, 2.5, 2.4}, 10, 0.0);
   const std::vector<Turn> turns = turns_of(x, turning_points(x));

@@ -50,6 +50,8 @@ TEST(SpaceBetweenWalls, CountsWallsThatCoincideOrAreHiddenOnce) {
   walls.push_back({{0, 0, 1}, 5});
   walls.push_back({Eigen::Vector3d(1, 1, 0).normalized(), 10});
   EXPECT_NEAR(space_between(walls), 48.0, k_cut_error);
+  walls.insert(walls.begin(), {{0, 0, 1}, 7});
+  EXPECT_NEAR(space_between(walls), 48.0, k_cut_error) << "whichever of them comes first";
 }
 
 TEST(SpaceBetweenWalls, IsInfiniteWhereItIsOpenAndZeroWhereWallsHavePassed) {
@@ -152,6 +154,9 @@ TEST(EscapeWarning, ComesWhereWallsSqueezeAParticleOut) {
   EXPECT_TRUE(contains(warnings_of(0.0175), "its centre moves by 11.4 R0, no wall by more than 0.1 R0"));
   EXPECT_FALSE(contains(warnings_of(0.0), "its centre moves"));
   EXPECT_FALSE(contains(warnings_of(1.0), "its centre moves"));
+  // The limit is R0 and three times the path of the walls, together 1.3 R0.
+  EXPECT_TRUE(contains(warnings_of(0.2 / 1.32), "its centre moves"));
+  EXPECT_FALSE(contains(warnings_of(0.2 / 1.28), "its centre moves"));
 }
 
 TEST(BalanceWarning, ComesWhereAFixedCentreIsPushedTowardsAWall) {
@@ -159,6 +164,21 @@ TEST(BalanceWarning, ComesWhereAFixedCentreIsPushedTowardsAWall) {
   const std::string free = fmt::format(k_press, "equilibrium");
   EXPECT_NE(warning_with(run_of("mdr", k_metal, fixed + std::string(k_anvil)), "do not balance"), "");
   EXPECT_EQ(warning_with(run_of("mdr", k_metal, free + std::string(k_anvil)), "do not balance"), "");
+}
+
+// Hertz's force goes like d^(3/2): displacements that differ by a share e leave 3/2 e of the force unbalanced.
+TEST(BalanceWarning, ComesFromOnePercentOfTheLargestForceOn) {
+  const auto warning_of = [](double difference) {
+    const std::string counterpart = fmt::format(
+        "[[loading.wall]]\nname = \"counterpart\"\nnormal = [0, 0, -1]\nsteps = [{{ displacement = {}, duration = 1 "
+        "}}]\n",
+        0.002 * (1.0 - difference));
+    return warning_with(
+        run_of("hertz", "youngs_modulus = 1e9, poisson_ratio = 0.3", fmt::format(k_press, "fixed") + counterpart),
+        "do not balance");
+  };
+  EXPECT_EQ(warning_of(0.006), "");
+  EXPECT_TRUE(contains(warning_of(0.008), "0.012 of the largest force")) << warning_of(0.008);
 }
 
 TEST(BalanceWarning, IsNotForASingleWallNorForWallsThatBalance) {
