@@ -167,21 +167,25 @@ TEST(Uncertainty, IsThatOfTheStraightLineInClosedForm) {
   EXPECT_NEAR(uncertainty.half_width(at_mean), uncertainty.t_quantile * s / std::sqrt(6.0), 1e-9);
 }
 
-TEST(Uncertainty, OfAPriorThatKnowsMoreThanTheDataIsThatOfThePrior) {
-  // One parameter: three data, whose mean it is, and a prior of deviation d. The noise s is estimated from the data.
+/// Uncertainty of the mean of three data, with a prior of a deviation [s]. The noise s is estimated from the data.
+Uncertainty uncertainty_of_mean(double deviation_of_prior) {
   const std::vector<double> y{1.0, 1.2, 0.9};
+  const auto problem =
+      problem_of(y, y, {{-9.0, 9.0, false, {}}}, [](double, std::span<const double> p) { return p[0]; });
+  LeastSquaresSolution solution;
+  solution.parameters = {31.0 / 30.0};
+  solution.bounds = {LeastSquaresSolution::Bound::none};
+  for (const double value : y) solution.residuals.push_back(value - 31.0 / 30.0);
+  solution.residuals.push_back(0.0);
+  Eigen::MatrixXd jacobian(4, 1);
+  jacobian << -1.0, -1.0, -1.0, 1.0 / deviation_of_prior;
+  return uncertainty_of(problem, solution, jacobian, 3, 0.95);
+}
+
+TEST(Uncertainty, OfAPriorThatKnowsMoreThanTheDataIsThatOfThePrior) {
+  const double s = std::sqrt(0.07 / 3.0);  // of the three
   for (const double d : {1e-3, 0.1, 1e3}) {
-    const double s = std::sqrt(0.07 / 3.0);  // of the three
-    const auto problem =
-        problem_of(y, y, {{-9.0, 9.0, false, {}}}, [](double, std::span<const double> p) { return p[0]; });
-    LeastSquaresSolution solution;
-    solution.parameters = {31.0 / 30.0};
-    solution.bounds = {LeastSquaresSolution::Bound::none};
-    for (const double value : y) solution.residuals.push_back(value - 31.0 / 30.0);
-    solution.residuals.push_back(0.0);
-    Eigen::MatrixXd jacobian(4, 1);
-    jacobian << -1.0, -1.0, -1.0, s / d;
-    const Uncertainty uncertainty = uncertainty_of(problem, solution, jacobian, 3, 0.95);
+    const Uncertainty uncertainty = uncertainty_of_mean(d / s);
     const double variance = 1.0 / (3.0 / (s * s) + 1.0 / (d * d));
     EXPECT_NEAR(uncertainty.standard_error(0), std::sqrt(variance), 1e-9 * std::sqrt(variance));
     const double t = uncertainty.t_quantile_of(0);
@@ -192,6 +196,35 @@ TEST(Uncertainty, OfAPriorThatKnowsMoreThanTheDataIsThatOfThePrior) {
     EXPECT_TRUE(d != 1e-3 || t < normal + 1e-3) << t;
     EXPECT_NEAR(uncertainty.half_width(Eigen::VectorXd::Ones(1)), uncertainty.half_width(0), 1e-12);
   }
+}
+
+// The mean of three data has the variance s^2/3. A prior of this variance leaves the data half of what remains.
+TEST(Uncertainty, OfAPriorThatKnowsHalfOfAVarianceHasFourTimesTheDegreesOfFreedom) {
+  const double eight_degrees = 2.30600413520417;  // tables of Student's t: 0.975
+  EXPECT_NEAR(uncertainty_of_mean(1.0 / std::sqrt(3.0)).t_quantile_of(0), eight_degrees, 1e-12);
+}
+
+TEST(Uncertainty, OfEqualDeviationsIsThatWithoutDeviationsAlsoAtABound) {
+  const std::vector<double> y{1.1, 1.3, 1.9, 2.1, 2.8, 2.9};
+  const auto problem = problem_of(k_six, y, {{-9.0, 9.0, false, {}}, {-9.0, 1.0, false, {}}}, k_line);
+  const auto solution = minimise(problem);
+  ASSERT_EQ(solution->bounds[1], LeastSquaresSolution::Bound::upper);
+  const Eigen::MatrixXd jacobian = residual_jacobian(problem, solution->parameters);
+  const Uncertainty without = uncertainty_of(problem, *solution, jacobian, 6, 0.95);
+  const Uncertainty with = uncertainty_of(problem, *solution, jacobian, 6, 0.95, {}, std::vector(6, 1.0));
+  EXPECT_NEAR(without.standard_deviation, std::sqrt(solution->cost / 4.0), 1e-12);
+  EXPECT_NEAR(with.standard_deviation, without.standard_deviation, 1e-12);
+  EXPECT_NEAR(with.standard_error(0), without.standard_error(0), 1e-12);
+}
+
+// Before first touch a row is zero and depends on nothing; one that is off shows noise.
+TEST(Uncertainty, RowsAreSilentOnlyIfTheyAreZeroAndDependOnNothing) {
+  const auto touching = [](double x, std::span<const double> p) { return p[0] * std::max(0.0, x - 0.5); };
+  std::vector<double> y = values_of(k_six, {2.0}, touching);
+  y[1] += 0.01;
+  y[4] += 0.01;
+  const auto problem = problem_of(k_six, y, {{-9.0, 9.0, false, {}}}, touching);
+  EXPECT_EQ(uncertainty_at(problem, *minimise(problem), 0.95).silent_rows, 2U);
 }
 
 TEST(Uncertainty, IntervalsCoverTheTruthAsOftenAsTheySay) {
