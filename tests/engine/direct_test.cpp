@@ -14,10 +14,10 @@ namespace {
 
 using View = ToySystem::View;
 
-// Guards are evaluated 32 times in a step: these instants lie within one piece.
-constexpr double k_first = 0.505;
-constexpr double k_second = 0.510;
-constexpr double k_third = 0.520;
+// Guards are evaluated at the six nodes of each quarter of a step: these instants lie between those at 0.508 and 0.542.
+constexpr double k_first = 0.515;
+constexpr double k_second = 0.520;
+constexpr double k_third = 0.530;
 
 /// A guard that is above zero between two instants only.
 double window(double y, double from, double to) { return 1e3 * (y - from) * (to - y); }
@@ -38,6 +38,18 @@ TEST(Direct, FindsAnEarlierRootOnceALaterOneHasShortenedThePiece) {
   EXPECT_EQ(result.events(), (std::vector<std::string>{"first", "second"}));
   EXPECT_NEAR(result.time_of("first"), k_first, 1e-15);
   EXPECT_NEAR(result.time_of("second"), k_second - 1e-9, 1e-15);
+}
+
+TEST(Direct, FindsAGuardThatReturnsBetweenTwoEvaluations) {
+  for (const int direction : {1, -1}) {
+    auto toy = std::make_unique<ToySystem>();
+    toy->watched = {{"out", direction,
+                     [direction](double, View y) { return direction * window(y[0], k_first, k_second); },
+                     [](std::span<double> y) { y[0] += 1e-9; }}};
+    const TestRun result = run_directly(std::move(toy));
+    EXPECT_EQ(result.events(), std::vector<std::string>{"out"}) << "direction " << direction;
+    EXPECT_NEAR(result.time_of("out"), k_first, 1e-15) << "direction " << direction;
+  }
 }
 
 TEST(Direct, AppliesRootsOfOnePieceInTheOrderOfTheirTimes) {

@@ -203,12 +203,12 @@ TEST(ForcesOfTables, AreNotBorneBelowZeroAsAWarningSays) {
 
 TEST(ForcesOfTables, NameTheOpeningThatBelongsToTheLeastForce) {
   const std::vector<std::pair<double, double>> rows{{1.0, 0.010}, {2.0, -0.002}, {3.0, -0.001}, {4.0, 0.0},
-                                                    {5.0, 0.012}, {7.0, -0.004}, {8.0, -0.005}};
+                                                    {5.0, 0.012}, {7.0, -0.004}, {8.0, -0.005}, {9.0, -0.003}};
   std::vector<Step> steps;
   double begin = 0.0;
   for (const auto& [time, force] : rows) {
     steps.push_back(force_ramp(force, time - begin));
-    steps.back().leg = {begin / 8.0, time / 8.0, begin != 4.0, begin, time};
+    steps.back().leg = {begin / 9.0, time / 9.0, begin != 4.0, begin, time};
     begin = time;
   }
   const TestRun result = run(hertz_scenario(Configuration::simple, steps));
