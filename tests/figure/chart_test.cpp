@@ -141,6 +141,9 @@ TEST(Chart, StylesDifferByTheirDashes) {
 TEST(Chart, TakesItsAxesFromTheValuesUnlessToldOtherwise) {
   Chart chart = chart_of({series("a")});
   EXPECT_NE(script_of(chart).find("set yrange [0:2.06]"), std::string::npos);
+  chart.panels[0].x.lowest = 0.25;
+  EXPECT_NE(script_of(chart).find("set xrange [0.25:1.0225]"), std::string::npos) << script_of(chart);
+  chart.panels[0].x.lowest = {};
   chart.panels[0].x.highest = 0.5;
   EXPECT_NE(script_of(chart).find("set xrange [0:0.5]"), std::string::npos);
   EXPECT_NE(script_of(chart).find("set yrange [0:1.03]"), std::string::npos)
@@ -155,6 +158,8 @@ TEST(Chart, ALogarithmicAxisTakesWholeDecadesOfPositiveValues) {
       << script_of(chart);
   chart.panels[0].series[0].y = {2e-12, 20.0, 3000.0};
   EXPECT_NE(script_of(chart).find("set ytics 1e3;"), std::string::npos) << "16 decades with six labels";
+  chart.panels[0].series[0].y = {10.0, 10.0, 10.0};
+  EXPECT_NE(script_of(chart).find("set yrange [10:100]"), std::string::npos) << "no empty axis: " << script_of(chart);
 }
 
 TEST(Chart, IsDrawnWithPointsLinesAndAreas) {
@@ -276,6 +281,9 @@ TEST(Chart, ShadesWhatLiesOutsideARange) {
   EXPECT_NE(script.find("from first 0, graph 0 to first 0.25, graph 1 behind"), std::string::npos) << script;
   EXPECT_NE(script.find("from first 0.75, graph 0 to first 1.03, graph 1 behind"), std::string::npos) << script;
   EXPECT_EQ(count(script, "title 'beyond'"), 1U) << script;
+  chart.panels[0].range = {.from = {}, .to = -1.0, .legend = "beyond"};
+  EXPECT_NE(script_of(chart).find("from first 0, graph 0 to first 1.03, graph 1 behind"), std::string::npos)
+      << "the whole panel, and nothing beside it: " << script_of(chart);
   chart.panels[0].range = {.from = -1.0, .to = 2.0, .legend = "beyond"};
   EXPECT_EQ(count(script_of(chart), "set object rectangle"), 0U) << "all that is shown lies inside";
 }

@@ -12,6 +12,17 @@ TEST(AxisRange, StartsAtZeroWhereTheValuesDo) {
   EXPECT_DOUBLE_EQ(range.tic_step, 0.1);
 }
 
+TEST(AxisRange, EndsAtZeroWhereTheValuesDo) {
+  const AxisRange range = axis_range({-0.4, -0.1, 0.0});
+  EXPECT_DOUBLE_EQ(range.lowest, -0.412);
+  EXPECT_EQ(range.highest, 0.0);
+}
+
+// 0.4/5 exceeds 0.08 by round-off, 5 times a step may exceed the range by it.
+TEST(AxisRange, TakesTheRoundStepThatARangeMissesByRoundOff) {
+  EXPECT_DOUBLE_EQ(axis_range({0.0, 1.0 + 1e-12}).tic_step, 0.2);
+}
+
 TEST(AxisRange, CutsTheRangeIntoFiveIntervalsAtMost) {
   for (const double highest : {0.0123, 1.0, 1.001, 2.0, 2.4, 4.99, 5.0, 7.7, 1e6}) {
     const AxisRange range = axis_range({0.0, highest});
