@@ -66,6 +66,14 @@ TEST(SobolIndices, OfASumAreItsSharesOfTheVariance) {
   }
 }
 
+// The points a, b and a with b's number. Less the mean 2 they are -1, 1, 0 and 2, -2, -1, with the variance 10/4; the
+// sums of b (ab - a) and of (a - ab)^2 are 7 and 10.
+TEST(SobolIndices, OfTwoSamplesAreThoseOfTheirFormulas) {
+  const SobolIndices indices = sobol_indices(std::vector{1.0, 3.0, 2.0, 4.0, 0.0, 1.0}, 1, 0.95);
+  EXPECT_NEAR(indices.first[0].value, 7.0 / 2.0 / 2.5, 1e-14);
+  EXPECT_NEAR(indices.total[0].value, 10.0 / 4.0 / 2.5, 1e-14);
+}
+
 TEST(SobolIndices, LeaveOutSamplesWithAPointThatHasNoValue) {
   const Design design = saltelli_design(3, 512, 4);
   std::vector<double> results = results_at(design, ishigami);
@@ -95,6 +103,29 @@ TEST(ElementaryEffects, OfAPlaneAreItsSlopes) {
     EXPECT_NEAR(effects.mean_size[k].lower, std::abs(slopes[k]), 1e-13);
     EXPECT_NEAR(effects.spread[k], 0.0, 1e-13);
   }
+}
+
+/// Trajectories of one factor with effects of 1 and 3 in turn.
+MorrisEffects effects_of_one_and_three(std::size_t trajectories, double confidence) {
+  Design design{.factors = 1, .level_count = 0};
+  std::vector<double> results;
+  for (std::size_t k = 0; k < trajectories; ++k) {
+    design.coordinates.insert(design.coordinates.end(), {0.125, 0.625});
+    results.insert(results.end(), {0.0, 0.5 * (k % 2 == 0 ? 1.0 : 3.0)});
+  }
+  return morris_effects(design, results, confidence);
+}
+
+TEST(ElementaryEffects, HaveTheStandardDeviationOfASample) {
+  EXPECT_NEAR(effects_of_one_and_three(2, 0.95).spread[0], std::sqrt(2.0), 1e-14) << "one degree of freedom";
+}
+
+// The mean of 400 effects of 1 and 3 has the standard error 1/20, and is nearly normal.
+TEST(ElementaryEffects, HaveTheIntervalOfTheirConfidence) {
+  const Estimate size = effects_of_one_and_three(400, 0.9).mean_size[0];
+  const double half = 1.6448536 / 20.0;
+  EXPECT_NEAR(size.lower, 2.0 - half, 0.15 * half);
+  EXPECT_NEAR(size.upper, 2.0 + half, 0.15 * half);
 }
 
 TEST(ElementaryEffects, SpreadWhereAFactorActsWithAnother) {

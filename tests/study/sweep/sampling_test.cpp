@@ -40,6 +40,17 @@ TEST(SampledDesign, OfAHypercubeHasOnePointInEverySliceOfEveryDimension) {
   }
 }
 
+// A number that is uniform in a slice has the variance 1/12.
+TEST(SampledDesign, OfAHypercubeIsRandomWithinItsSlices) {
+  const std::size_t runs = 4000;
+  double variance = 0.0;
+  for (const double u : sampled_design("lhs", 1, runs, 3).coordinates) {
+    const double place = u * runs;
+    variance += std::pow(place - std::floor(place) - 0.5, 2) / runs;
+  }
+  EXPECT_NEAR(variance, 1.0 / 12.0, 0.005);
+}
+
 TEST(SampledDesign, OfASequenceIntegratesBetterThanARandomOne) {
   const auto error = [](const std::string& name) {
     double squares = 0.0;

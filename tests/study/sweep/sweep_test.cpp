@@ -11,6 +11,7 @@
 
 #include "history/run.hpp"
 #include "history/table.hpp"
+#include "study/sweep/factor.hpp"
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
@@ -263,6 +264,19 @@ TEST_F(SweepFiles, DistributionsHaveTheirMoments) {
   EXPECT_NEAR(static_cast<double>(dies), 1000.0, 10.0);
 }
 
+TEST(SweepDistributions, HaveTheirQuantilesInClosedForm) {
+  using Shape = FactorDistribution::Shape;
+  const double z = 1.959963984540054;  // of the normal distribution, at 0.975
+  const double q = 0.025;
+  EXPECT_NEAR((FactorDistribution{Shape::normal, {3.0, 0.2, 0.0}}.at(1.0 - q).number), 3.0 + 0.2 * z, 1e-12);
+  EXPECT_NEAR((FactorDistribution{Shape::normal, {3.0, 0.2, 0.0}}.at(q).number), 3.0 - 0.2 * z, 1e-12);
+  EXPECT_NEAR((FactorDistribution{Shape::lognormal, {3.0, 0.2, 0.0}}.at(q).number), 3.0 * std::exp(-0.2 * z), 1e-12);
+  const FactorDistribution triangular{Shape::triangular, {1.0, 2.0, 5.0}};
+  EXPECT_NEAR(triangular.at(0.25).number, 2.0, 1e-12);
+  EXPECT_NEAR(triangular.at(q).number, 1.0 + std::sqrt(q * 4.0 * 1.0), 1e-12);
+  EXPECT_NEAR(triangular.at(1.0 - q).number, 5.0 - std::sqrt(q * 4.0 * 3.0), 1e-12);
+}
+
 TEST_F(SweepFiles, SamplesLeaveOutWhatTheConstraintsExclude) {
   const std::string text = k_uncertain;
   const Sweep sweep = read("constraints = [\"material.youngs_modulus / material.yield_stress > 50\"]\n" + text);
@@ -311,6 +325,37 @@ TEST_F(SweepFiles, FaultsOfDistributionsAreAtTheirPlaces) {
   EXPECT_EQ(faults_of("scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { mean = 0.3, std = 0.01 }\n"),
             (std::vector<std::string>{"sweep.toml:3:28: \"material.poisson_ratio\": a distribution goes with design = "
                                       "\"sobol\", \"halton\", \"lhs\", \"random\", \"saltelli\" or \"morris\" only"}));
+}
+
+TEST_F(SweepFiles, NumbersInRadiiAndInMetresDoNotMix) {
+  const auto fault_of = [&](const std::string& design, const std::string& levels) {
+    const auto faults = faults_of("scenario = \"small.toml\"\n" + design +
+                                  "[vary]\n\"loading.steps[0].displacement\" = " + levels + "\n");
+    return faults.size() == 1 ? faults[0].substr(faults[0].rfind(": ") + 2) : fmt::format("{} faults", faults.size());
+  };
+  const std::string sampled = "design = \"lhs\"\nruns = 10\n";
+  EXPECT_EQ(fault_of(sampled, "{ mean = \"0.1 R0\", std = \"0.01 mm\" }"),
+            "expected mean and std both in R0, or neither");
+  EXPECT_EQ(fault_of("", "{ from = \"0.1 R0\", to = \"0.3 mm\" }"), "expected from and to both in R0, or neither");
+  EXPECT_EQ(fault_of(sampled, "{ triangular = [\"0.1 mm\", \"0.2 mm\", \"0.2 R0\"] }"),
+            "expected all values in R0, or none");
+}
+
+TEST_F(SweepFiles, ALogarithmicRangeHasNoPlaceForZero) {
+  const std::string head = "scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = ";
+  EXPECT_EQ(
+      faults_of(head + "{ from = 0, to = 0.3, scale = \"log\" }\n"),
+      (std::vector<std::string>{"sweep.toml:3:58: \"material.poisson_ratio\": a logarithmic range has no place for "
+                                "0; expected from and to above 0"}));
+}
+
+TEST_F(SweepFiles, ATableStaysWithinTheRangesThatAreVaried) {
+  write("runs.csv", "material.poisson_ratio\n0.2\n0.19\n0.3\n0.31\n");
+  const std::string problem = ": is outside of what [vary] gives for this key";
+  EXPECT_EQ(faults_of("scenario = \"small.toml\"\ndesign = \"table\"\ntable = \"runs.csv\"\n[vary]\n"
+                      "\"material.poisson_ratio\" = { from = 0.2, to = 0.3 }\n"),
+            (std::vector<std::string>{"runs.csv:3:1: material.poisson_ratio = 0.19" + problem,
+                                      "runs.csv:5:1: material.poisson_ratio = 0.31" + problem}));
 }
 
 TEST_F(SweepFiles, AllFaultsAreReportedAtOnceAndAtTheirPlaces) {
