@@ -64,13 +64,16 @@ TEST(Direct, AppliesRootsOfOnePieceInTheOrderOfTheirTimes) {
 }
 
 TEST(Direct, SeesAGuardThatBeginsAtZeroAndReturnsWithinTheFirstPiece) {
-  for (const int direction : {1, -1}) {
-    auto toy = std::make_unique<ToySystem>();
-    toy->watched = {{"return", direction, [direction](double, View y) { return direction * y[0] * (y[0] - 0.01); },
-                     [](std::span<double> y) { y[0] += 1e-9; }}};
-    const TestRun result = run_directly(std::move(toy));
-    EXPECT_EQ(result.events(), std::vector<std::string>{"return"}) << "direction " << direction;
-    EXPECT_NEAR(result.time_of("return"), 0.01, 1e-15) << "direction " << direction;
+  for (const double root : {0.005, 0.01}) {  // before and after the first evaluation inside the piece, at 0.0084
+    for (const int direction : {1, -1}) {
+      SCOPED_TRACE(testing::Message() << root << ", direction " << direction);
+      auto toy = std::make_unique<ToySystem>();
+      toy->watched = {{"return", direction, [=](double, View y) { return direction * y[0] * (y[0] - root); },
+                       [](std::span<double> y) { y[0] += 1e-9; }}};
+      const TestRun result = run_directly(std::move(toy));
+      EXPECT_EQ(result.events(), std::vector<std::string>{"return"});
+      EXPECT_NEAR(result.time_of("return"), root, 1e-15);
+    }
   }
 }
 
