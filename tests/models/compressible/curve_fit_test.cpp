@@ -141,5 +141,16 @@ TEST(CompressibleUnloadingFit, RecoversAnExactUnloading) {
   }
 }
 
+TEST(CompressibleUnloadingFit, CountsPointsBelowTheReversalFromAFiftiethOfItsForceOn) {
+  const std::vector<double> d{0.4, 0.39, 0.38};
+  EXPECT_TRUE(fit_unloading(d, std::vector{1.0, 0.5, 0.021}, 46.6));
+  EXPECT_FALSE(fit_unloading(d, std::vector{1.0, 0.5, 0.019}, 46.6)) << "two points are too few";
+  const auto fit = fit_unloading(d, std::vector{1.0, 0.5, 0.1}, 46.6);
+  const auto overshot = fit_unloading(std::vector{0.4, 0.401, 0.39, 0.38}, std::vector{1.0, 0.7, 0.5, 0.1}, 46.6);
+  ASSERT_TRUE(fit && overshot);
+  EXPECT_EQ(overshot->shape.exponent, fit->shape.exponent);
+  EXPECT_EQ(overshot->separation, fit->separation);
+}
+
 }  // namespace
 }  // namespace monograin::compressible::curve_fit_test

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "compressible/system.hpp"
 #include "models/accuracy.hpp"
 
 namespace monograin::compressible::law_test {
@@ -134,6 +135,8 @@ TEST(CompressibleUnloading, HasTheSlopeAndTheForceOfItsDerivatives) {
     const double step = 0.1 * curve.length;
     const double growth = (unloading_force(curve, d + step) - unloading_force(curve, d - step)) / (2.0 * step);
     EXPECT_NEAR(unloading_slope(curve, d), growth, 1e-12 * growth) << share;
+    const double power = (recoverable_work(curve, d + step) - recoverable_work(curve, d - step)) / (2.0 * step);
+    EXPECT_NEAR(unloading_force(curve, d), power, 1e-11 * std::abs(power)) << share;
   }
 }
 
@@ -163,6 +166,24 @@ TEST(CompressibleUnloading, DissipatesWhereItIsSteeperThanTheLoading) {
     EXPECT_GE(work - recoverable_work(curve, curve.largest), -8 * k_epsilon * work);
   }
   EXPECT_GT(steep, 15000);
+}
+
+TEST(CompressibleUnloading, WarnsOfWhatHappenedInOneRun) {
+  WallLaw clipped({.law = {1.53, 0.36, 3.48},
+                   .hertz_stiffness = hertz_stiffness(4.5, 0.3),
+                   .unloading = UnloadingRule(UnloadingShape{1.7, 1.2})});
+  WallLaw::Branch branch;
+  clipped.turn(branch, 0.1);
+  EXPECT_EQ(clipped.warnings(1.0).size(), 1u);
+  clipped.start();
+  EXPECT_TRUE(clipped.warnings(1.0).empty());
+  WallLaw flat({.law = {2.0, 0.1, 12.0},
+                .hertz_stiffness = hertz_stiffness(4.0, 0.3),
+                .unloading = UnloadingRule(UnloadingShape{1.0, 0.2})});
+  static_cast<void>(flat.stored({.part = Part::exponential}, 0.4));
+  EXPECT_EQ(flat.warnings(1.0).size(), 1u);
+  flat.start();
+  EXPECT_TRUE(flat.warnings(1.0).empty());
 }
 
 TEST(CompressibleUnloadingTable, IsBilinearAndConstantOutside) {

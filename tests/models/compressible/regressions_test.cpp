@@ -141,6 +141,8 @@ TEST(CompressibleRegressions, TakeWhatIsGivenInsteadAndKnowWhereTheyExtrapolate)
   EXPECT_TRUE(is_extrapolated({}, 4.4));
   EXPECT_FALSE(is_extrapolated({}, 4.5));
   EXPECT_FALSE(is_extrapolated({{}, 0.2, 3.0}, 4.4)) << "k was fitted to all of them";
+  EXPECT_TRUE(is_extrapolated({{}, 0.2, {}}, 4.4)) << "a was not";
+  EXPECT_TRUE(is_extrapolated({{}, {}, 3.0}, 4.4)) << "delta_t was not";
 }
 
 }  // namespace

@@ -294,6 +294,7 @@ TEST(PackingLaw, RefusesParametersOutsideItsDomain) {
   EXPECT_TRUE(refuses([](Parameters& p) { p.strain_offset = 0.0; }, "c2"));
   EXPECT_TRUE(refuses([](Parameters& p) { p.plastic_growth = -1.0; }, "alpha"));
   EXPECT_TRUE(refuses([](Parameters& p) { p.jamming_fraction = 1.0; }, "jamming"));
+  EXPECT_TRUE(refuses([](Parameters& p) { p.jamming_fraction = 1.0 - 9e-6; }, "no pores are left"));
   EXPECT_TRUE(refuses([](Parameters& p) { p.coordination_at_reference = 3.0; }, "Z_1"));
   EXPECT_TRUE(refuses([](Parameters& p) { p.reference_fraction = 0.8; }, "Phi_1"));
   EXPECT_TRUE(refuses([](Parameters& p) { p.plasticity->yield_stress = 0.0; }, "yield"));

@@ -362,6 +362,31 @@ TEST(PlasticUnloading, OfAHardeningParticleCreatesEnergyJustBeforeZeroPorosity) 
   EXPECT_NEAR((dissipation[peak] - dissipation.back()) / now.last("work"), 0.0239, 1e-4);
 }
 
+/// True if a run warns that its walls have gone farther than the source compares.
+bool warns_of_reach(const CheckedScenario& scenario) {
+  return std::ranges::any_of(run(scenario).record.warnings,
+                             [](const std::string& text) { return contains(text, "have gone farther than"); });
+}
+
+TEST(PlasticEnds, AreWarnedOfFromTheEndOfTheComparisonOn) {
+  EXPECT_FALSE(warns_of_reach(hardening_scenario(Walls::simple, 1.0, 0.24, {ramp(0.499)})));
+  EXPECT_TRUE(warns_of_reach(hardening_scenario(Walls::simple, 1.0, 0.24, {ramp(0.501)})));
+  EXPECT_FALSE(warns_of_reach(steel(Walls::simple, {ramp(0.499)})));
+  EXPECT_TRUE(warns_of_reach(steel(Walls::simple, {ramp(0.501)})));
+}
+
+TEST(PlasticUnloading, WarnsOfWhatHappenedInOneRun) {
+  using OneWall = WallLaw<similarity::Law>;
+  OneWall law(similarity::make_law(0.24),
+              {.strength = 1.0, .can_unload = true, .composite_modulus = 50.0, .poisson_ratio = 0.4});
+  OneWall::Branch branch;
+  law.turn(branch, 1e-4);
+  static_cast<void>(law.follower(branch, true, 1e-4));
+  EXPECT_EQ(law.warnings(1.0).size(), 2u);
+  law.start();
+  EXPECT_TRUE(law.warnings(1.0).empty());
+}
+
 TEST(PlasticUnloading, WarnsOfContactsThatRecoverMoreThanTheyWereCompressed) {
   const double yield = semimech_law(steel(Walls::simple, {})).yield_approach;
   const TestRun small = run(unloading_steel(Walls::simple, {ramp(1.05 * yield), ramp(0.9 * yield)}));

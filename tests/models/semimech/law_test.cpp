@@ -611,6 +611,30 @@ TEST(SemimechDomain, IsCalibratedToHalfTheRadiusOrALittleBeyondZeroPorosity) {
   }
 }
 
+// Material in a die that lies just inside or outside of one end of one range, and inside of the others.
+TEST(SemimechDomain, NamesEveryEndOfTheRangesOfEnclosedParticles) {
+  const auto names = [](double modulus_over_yield, double poisson_ratio) {
+    std::string all;
+    for (const OutOfRange& out : outside_calibration(modulus_over_yield, poisson_ratio, 1.0, Configuration::die))
+      all += std::string(out.quantity) + ";";
+    return all;
+  };
+  const double in = 1.0 + 1e-6;
+  const double out = 1.0 - 1e-6;
+  EXPECT_EQ(names(100.0 * in, 0.45), "");
+  EXPECT_EQ(names(100.0 * out, 0.45), "E/Y;");
+  EXPECT_EQ(names(5000.0 / in, 0.3), "");
+  EXPECT_EQ(names(5000.0 / out, 0.3), "E/Y;");
+  EXPECT_EQ(names(1000.0, 0.2 * in), "");
+  EXPECT_EQ(names(1000.0, 0.2 * out), "nu;");
+  EXPECT_EQ(names(1000.0, 0.48 / in), "");
+  EXPECT_EQ(names(1000.0, 0.48 / out), "nu;");
+  EXPECT_EQ(names(64.0 * 3.0 * (1.0 - 2.0 * 0.2) * in, 0.2), "");
+  EXPECT_EQ(names(64.0 * 3.0 * (1.0 - 2.0 * 0.2) * out, 0.2), "E/(3 (1-2nu) Y);");
+  EXPECT_EQ(names(28000.0 * 3.0 * (1.0 - 2.0 * 0.48) / in, 0.48), "");
+  EXPECT_EQ(names(28000.0 * 3.0 * (1.0 - 2.0 * 0.48) / out, 0.48), "E/(3 (1-2nu) Y);");
+}
+
 TEST(SemimechDomain, NamesWhatIsOutsideTheCalibration) {
   EXPECT_TRUE(outside_calibration(200e9, 0.3, 200e6, Configuration::hydrostatic).empty());
   const auto soft = outside_calibration(50.0, 0.3, 1.0, Configuration::simple);
