@@ -142,6 +142,7 @@ TEST(ReadyCalibration, IntervalOfPoissonsRatioEndsWhereFitsWithItHeldAreThatMuch
   EXPECT_GT(interval.upper - interval.lower, 0.08);
   // A jump of the force at yield, which the fit puts next to a datum, is no derivative.
   EXPECT_NEAR(result.uncertainty.standard_error(2), 0.026, 0.0026);
+  EXPECT_NEAR(result.uncertainty.half_width(2), 0.5 * (interval.upper - interval.lower), 1e-12);
   EXPECT_LT(result.uncertainty.correlation(0, 2), -0.95);
   EXPECT_LT(std::ranges::max(result.fit.band), 0.01 * std::ranges::max(result.fit.y));
   EXPECT_LT(std::ranges::max(result.curves.at(0).band), 0.01 * std::ranges::max(result.fit.y));

@@ -715,6 +715,38 @@ TEST_F(CalibrationTest, FindsIntervalsAsAskedAndSaysHow) {
   EXPECT_EQ(faults().size(), 1U);
 }
 
+// Residuals of 1e-13 of the force are round-off: their sum of squares has no shape to examine.
+TEST_F(CalibrationTest, IntervalsOfAnExactFitAreThoseOfTheCovariance) {
+  std::vector<Row> rows;
+  for (int k = 1; k <= 25; ++k) {
+    const double x = 1e-6 * k;
+    rows.push_back({x, 70e9 * hertz_force_per_modulus(x) * (1.0 + (k % 2 == 0 ? 1e-13 : -1e-13))});
+  }
+  write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+  const CalibrationResult result = calibrate(read());
+  EXPECT_EQ(result.method, IntervalMethod::covariance);
+  EXPECT_EQ(result.method_reason, "the fit is exact");
+}
+
+// Over a share e of x, the derivatives by modulus and offset, x^(3/2) and x^(1/2), have an angle of e/sqrt(12): the
+// data know one combination 2 sqrt(12)/e times as well as the other, 1400 times for half a percent.
+TEST_F(CalibrationTest, IntervalsOfNearlyDependentNumbersAreProfiles) {
+  write("c.toml", std::string(k_calibration) + "\"data.offset\" = { from = \"-1 um\", to = \"1 um\" }\n");
+  const auto fit_over = [&](double share) {
+    std::vector<Row> rows;
+    for (int k = 0; k < 25; ++k) {
+      const double x = 2e-5 * (1.0 + share * k / 24.0);
+      rows.push_back({x, 70e9 * hertz_force_per_modulus(x) * (1.0 + (k % 2 == 0 ? 1e-6 : -1e-6))});
+    }
+    write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+    return calibrate(read());
+  };
+  const CalibrationResult narrow = fit_over(0.005);
+  EXPECT_EQ(narrow.method, IntervalMethod::profile);
+  EXPECT_TRUE(contains(narrow.method_reason, "the covariance loses its digits")) << narrow.method_reason;
+  EXPECT_EQ(fit_over(0.02).method, IntervalMethod::covariance);
+}
+
 TEST_F(CalibrationTest, LengthsInFreeMayBeSharesOfTheRadius) {
   write("c.toml", std::string(k_calibration) + "\"data.offset\" = { from = \"-0.01 R0\", to = \"0.02 R0\" }\n");
   const FreeParameter offset = read().free.at(1);
