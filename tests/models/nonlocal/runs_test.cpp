@@ -278,6 +278,17 @@ TEST(NonlocalRuns, UnloadingRetracesLoadingAndTheWorkIsStored) {
   }
 }
 
+TEST(NonlocalRuns, HaveThePressureOfTheirForceOverTheContactArea) {
+  const TestRun now = run(with_points(nonlocal_scenario(Configuration::die, 0.48, {ramp(0.4)}), 20));
+  const std::vector<double> force = now.outputs("axial.force");
+  const std::vector<double> radius = now.outputs("axial.contact_radius");
+  const std::vector<double> pressure = now.outputs("axial.pressure");
+  ASSERT_GT(force.back(), 0.0);
+  for (std::size_t row = 0; row < force.size(); ++row) {
+    EXPECT_NEAR(pressure[row] * pi * radius[row] * radius[row], force[row], 1e-14 * force.back()) << row;
+  }
+}
+
 TEST(NonlocalRuns, ForceAndDisplacementControlAreTheSame) {
   const TestRun told = run(with_points(nonlocal_scenario(Configuration::die, 0.48, {ramp(0.42)}), 30));
   const double force = told.last("axial.force");
