@@ -23,7 +23,8 @@ class CentreSearch {
   /// Moves a state along the straight line of targets to the given ones. The path matters, because a wall that makes
   /// contact and leaves again keeps the centre where it has moved it. A step is accepted if the same walls touch all
   /// along it, and if its halves lead to the same position.
-  /// @return false, with y unchanged, where no wall is idle, or where further walls begin to bear on the path
+  /// @return false, with y unchanged, where no wall is idle, where loaded contacts hold the centre in every direction,
+  /// or where further walls begin to bear on the path
   [[nodiscard]] bool follow(Contacts& contacts, std::span<const Target> targets, std::span<double> y);
   /// Moves the centre clear of all walls, so that no contact is loaded. No other state is in equilibrium then: its
   /// forces balance, and the cleared centre has no overlap, hence sum_j F_j d_j <= 0 and
