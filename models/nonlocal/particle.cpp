@@ -6,7 +6,6 @@
 
 #include "contacts/centre/obstacles.hpp"
 #include "contacts/side_ahead.hpp"
-#include "nonlocal/evasion.hpp"
 #include "system/equations.hpp"
 #include "system/resolution.hpp"
 
@@ -84,6 +83,7 @@ void Particle::or_report_pull(double xi, auto&& ask) const {
 
 std::span<double> Particle::evaluate(double xi, std::span<const double> y) {
   std::ranges::copy(y.first(state_.size()), state_.begin());
+  ahead_.clear();
   for (std::size_t i = 0; i < size(); ++i) {
     if (is_force_controlled(i)) state_[i] = square_under_force(i, xi);
   }
@@ -99,10 +99,14 @@ void Particle::note(std::span<double> y) const {
 }
 
 std::optional<double> Particle::square_ahead(std::size_t i, double xi) {
-  std::vector<double> ahead = state_;
   return contacts::side_ahead(xi, scales_.touch, [&](double later) {
-    search_.solve(contacts_, ramps_, later, ahead);
-    return ahead[i];
+    auto known = std::ranges::find(ahead_, later, &StateAhead::xi);
+    if (known == ahead_.end()) {
+      std::vector<double> next = ahead_.empty() ? state_ : ahead_.back().state;
+      search_.solve(contacts_, ramps_, later, next);
+      known = ahead_.insert(known, {later, std::move(next)});
+    }
+    return known->state[i];
   });
 }
 

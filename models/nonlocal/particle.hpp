@@ -115,6 +115,12 @@ class Particle {
   EquilibriumSearch search_;
   Rates motion_;
   CentreSupport support_;
+  /// A state a little later than state_.
+  struct StateAhead {
+    double xi = 0.0;
+    std::vector<double> state;
+  };
+  std::vector<StateAhead> ahead_;  ///< states of square_ahead(), the same for all classes
   // Work space, so that nothing is allocated while integrating.
   std::vector<double> state_, rates_;  ///< unknowns of contacts_, and their rates
   std::vector<double> all_rates_;      ///< with that of the work
