@@ -33,6 +33,7 @@ double eliminate(Eigen::MatrixXd& matrix, bool to_the_end) noexcept {
     const Eigen::Index rest = count - p;
     for (Eigen::Index c = 1; c < rest; ++c) {
       const double factor = pivot[c] * inverse;
+      if (factor == 0.0) continue;  // open contacts
       double* const column = pivot + c * count;
       for (Eigen::Index i = c; i < rest; ++i) column[i] -= factor * pivot[i];
     }

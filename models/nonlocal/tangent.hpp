@@ -64,14 +64,15 @@ class Tangent {
 
  private:
   [[nodiscard]] bool eliminate_in_order(const Contacts& contacts, std::span<const double> stiffness) noexcept;
-  [[nodiscard]] bool eliminate_by_blocks(const Contacts& contacts, std::span<const double> stiffness);
+  [[nodiscard]] bool eliminate_loaded(const Contacts& contacts, std::span<const double> stiffness);
   [[nodiscard]] double* row(std::size_t j) noexcept { return matrix_.data() + j * stride_; }
   [[nodiscard]] const double* row(std::size_t j) const noexcept { return matrix_.data() + j * stride_; }
 
   std::size_t stride_;
   std::vector<double> matrix_;  ///< a row per class: 1 - G dF/dg, approaches by the centre, right-hand side
-  // Work space of eliminate_by_blocks().
-  Eigen::MatrixXd symmetric_, solutions_;
+  // Work space of eliminate_loaded().
+  std::vector<Eigen::Index> loaded_;
+  Eigen::MatrixXd symmetric_, solutions_, forces_;
   Eigen::VectorXd roots_;
 };
 
