@@ -44,10 +44,11 @@ Contacts::Contacts(const Formulation& model, std::span<const ContactClass> class
   coupling_ = coupling_of(influence, walls, classes);
   neighbours_ = neighbours_of(poisson_ratio_, walls, classes.size());
   rivalry_ = rivalry_of(influence, modulus_, walls, classes.size());
-  has_modes_of_walls_ = has_negative_coupling(influence);
+  has_modes_of_walls_ = walls.size() > classes.size() && has_negative_coupling(influence);
   std::vector<std::size_t> class_of;
   for (const Wall& wall : walls) class_of.push_back(wall.contact_class);
-  // With positive couplings the critical mode is positive (Perron), hence one of the classes.
+  // With positive couplings the critical mode is positive (Perron), hence one of the classes. Classes of one wall each
+  // have all modes of the walls.
   modes_ = Modes(influence, class_of, !has_modes_of_walls_);
 
   const Eigen::Matrix3Xd mean_normals = mean_normals_of(classes);

@@ -128,7 +128,7 @@ class Contacts {
   /// Smallest pivot of an elimination of M minus the shift; the first that is not positive, if there is one. Has the
   /// sign of the margin minus the shift, passes smoothly through zero with it, and costs a tenth of margin().
   [[nodiscard]] double least_pivot(std::span<const double> y, double shift = 0.0);
-  /// True if the margin includes modes that break the symmetry of the classes.
+  /// True if the margin includes modes that break the symmetry of the classes, which Newton's method does not see.
   [[nodiscard]] bool has_modes_of_walls() const noexcept { return has_modes_of_walls_; }
   /// Change of a class's signed square within which one step may follow the branch. Walls can push each other off the
   /// surface where 2 E* a times their coupling reaches 1, and that is over once contacts have grown several times.

@@ -265,6 +265,13 @@ TEST(NonlocalBranch, IsFoundFromFarAway) {
   }
 }
 
+TEST(NonlocalBranch, HasNoModesBeyondThoseOfClassesOfOneWall) {
+  // Close walls push the surface off each other, which may break the symmetry of a class.
+  const auto classes = oblique_die(20.0, 4);
+  EXPECT_TRUE(Contacts({k_rubber}, classes, Centre::fixed).has_modes_of_walls());
+  EXPECT_FALSE(Contacts({k_rubber}, single_walls(classes), Centre::fixed).has_modes_of_walls());
+}
+
 TEST(NonlocalSymmetry, UnloadingRetracesLoading) {
   Contacts contacts({k_rubber, Terms::four}, oblique_die(8.0), Centre::fixed);
   std::vector<double> y(4, 0.0);
