@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "nonlocal/evasion.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
@@ -19,20 +18,6 @@ constexpr double k_early = 1e-9;  // of a step: near its start, which walls touc
 // just left goes unnoticed; too near, the remainder is round-off.
 constexpr std::array k_late{1e-3, 1e-6, 1e-9};
 constexpr int k_most_tries = 300;  // rejected steps of a path; after that many, differences are round-off
-
-/// True if prescribed forces act on the centre along the directions of the projector, in which only idle walls could
-/// balance them. The balance of all forces would not distinguish a small one from zero beside large ones.
-bool leaves_forces(Contacts& contacts, const Eigen::Matrix3d& projector, std::span<const Target> targets,
-                   std::span<const double> y) {
-  const Evaluation& at = contacts.evaluate(y);
-  Eigen::Vector3d push = Eigen::Vector3d::Zero();
-  double sum = 0.0;
-  for (std::size_t j = 0; j < targets.size(); ++j) {
-    sum += contacts.weight(j) * at.forces[j];
-    if (targets[j].is_force) push += contacts.weight(j) * targets[j].value * contacts.mean_normal(j);
-  }
-  return (projector * push).norm() > k_round_off * sum;
-}
 
 }  // namespace
 
@@ -90,8 +75,7 @@ bool CentreSearch::clear_idle(Contacts& contacts, std::span<double> y) {
   const Eigen::Matrix3d projector = support_.unheld_directions(contacts);
   std::ranges::copy(y, trial_.begin());
   const bool is_found = projector.trace() > 0.5 && newton_.solve(contacts, {.targets = released_}, trial_) &&
-                        is_balanced(contacts, released_, trial_) &&
-                        !leaves_forces(contacts, projector, released_, trial_);
+                        is_balanced(contacts, released_, trial_);
   if (!is_found) return false;
 
   const Evaluation& at = contacts.evaluate(trial_);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nonlocal/evasion.hpp"
 #include "system/equations.hpp"
 #include "system/limit.hpp"
 
