@@ -154,18 +154,27 @@ LammpsLaw lammps_law(const ModelInput& input) {
       throw std::invalid_argument(std::string("LAMMPS computes mdr with ") + option + " = '" + only + "' only");
     }
   }
+  if (input.material("poisson_ratio") < 0.0) {
+    throw std::invalid_argument("LAMMPS takes no negative Poisson's ratio for mdr");
+  }
   std::string law = "mdr";
   for (const char* key : {"youngs_modulus", "poisson_ratio", "yield_stress", "surface_energy"}) {
     law += " " + number_text(input.material(key));
   }
   law += " 0 0 tangential linear_nohistory 0 0 damping mdr 1";
-  return {.pair = law,
-          .wall = law,
-          .differences = {
-              "LAMMPS multiplies the force of a wall by 1 + exp(10.7 d/R0 - 10), d = displacement relative to the "
-              "centre: by 1.00005 at first touch, 1.003 at 0.4 R0, 1.01 at 0.5 R0.",
-              "LAMMPS drops a contact and its dent once the wall no longer overlaps the apparent sphere.",
-              "LAMMPS bounds the apparent radius by 1.5 R0."}};
+  return {
+      .pair = law,
+      .wall = law,
+      .differences = {
+          "The sixth number, psi_b = 0, leaves out the bulk response of LAMMPS, as monograin does. Confined beds of "
+          "particles need it: set psi_b there.",
+          "LAMMPS multiplies the force of a wall by 1 + exp(10.7 d/R0 - 10), d = displacement relative to the "
+          "centre: by 1.00005 at first touch, 1.003 at 0.4 R0, 1.01 at 0.5 R0.",
+          "LAMMPS counts all contacts in the growth of the apparent radius, averages it over ten steps, lets it "
+          "grow while other walls unload, fades it where little free surface is left, and bounds it by 1.5 R0.",
+          "LAMMPS drops a contact and its dent once the wall no longer overlaps the apparent sphere.",
+          "With adhesion, LAMMPS keeps the adhesive radius below 0.99 of the contact radius, and iterates to an "
+          "absolute 1e-10 in its unit of length: for particles of micrometres units micro are better."}};
 }
 
 ProgramBounds draw(Dice& dice, DrawnMaterial& drawn) {

@@ -26,20 +26,15 @@ struct ExportOptions {
   std::optional<std::string> wall;
 };
 
-/// A scenario's run, and the motion of its walls.
-struct ExportedRun {
-  RunRecord record;
-  Motion motion;
-};
-
-ExportedRun run_for_export(const CheckedScenario& scenario) {
-  ExportedRun run{.record = record_run(scenario, {.energies = true}), .motion = {}};
+/// Runs a scenario, and gives the motion of its walls.
+Motion motion_of_run(const CheckedScenario& scenario, RunStatus& status) {
+  const Run run = run_scenario(scenario);
   for (const std::string& warning : run.record.warnings) say("warning: {}\n", warning);
   if (!run.record.message.empty()) {
     say("{}: {}: {}\n", scenario.name, to_string(run.record.status), run.record.message);
   }
-  run.motion = motion_of(scenario, run.record.history);
-  return run;
+  status = run.record.status;
+  return motion_of(scenario, run.record.history);
 }
 
 /// Prints a text, or writes it to the file of -o.
@@ -69,17 +64,13 @@ int export_scenario(const ExportOptions& options, Make&& make) {
 int export_lammps(const ExportOptions& options) {
   return export_scenario(options, [](const CheckedScenario& scenario, RunStatus& status) {
     const LammpsLaw law = lammps_law_of(scenario);
-    const ExportedRun run = run_for_export(scenario);
-    status = run.record.status;
-    return lammps_input(scenario, run.motion, law, scenario.name + ".lammps.csv");
+    return lammps_input(scenario, motion_of_run(scenario, status), law);
   });
 }
 
 int export_table(const ExportOptions& options) {
   return export_scenario(options, [&](const CheckedScenario& scenario, RunStatus& status) {
-    const ExportedRun run = run_for_export(scenario);
-    status = run.record.status;
-    return csv_text(force_table(run.motion, options.wall));
+    return csv_text(force_table(motion_of_run(scenario, status), options.wall));
   });
 }
 
@@ -101,6 +92,7 @@ void add_export_command(CLI::App& app, Action& action) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = app.add_subcommand("export", "Write a scenario's test for other programs");
   command->require_subcommand(1);
+  command->footer("Example: monograin export lammps scenarios/die.toml -o in.die");
   CLI::App* lammps = add_export(
       *command, "lammps", "Input file of LAMMPS for the same test, with its line pair_coeff for the material", options);
   lammps->footer("Example: monograin export lammps scenarios/die.toml -o in.die");

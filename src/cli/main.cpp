@@ -129,7 +129,16 @@ std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app, std
     return fmt::format("a command is missing; there are {}. 'monograin --help' says what they do",
                        names_of(commands_of(app)));
   }
-  const CLI::App& command = *named.front();
+  const CLI::App* deepest = named.front();
+  std::string whole_name = deepest->get_name();
+  while (!deepest->get_subcommands().empty()) {
+    deepest = deepest->get_subcommands().front();
+    whole_name += " " + deepest->get_name();
+  }
+  const CLI::App& command = *deepest;
+  if (const auto kinds = commands_of(command); !kinds.empty()) {
+    return fmt::format("{0}: expected one of {1}. 'monograin {0} --help' says more", whole_name, names_of(kinds));
+  }
   std::string fault;
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     // The parser keeps the words only in its message, the last one first.
@@ -148,7 +157,7 @@ std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app, std
     fault = fault_of_option(error, command, words);
   }
   if (fault.empty()) fault = "the arguments do not go together";
-  return fmt::format("{}: {}. 'monograin {} --help' says more", command.get_name(), fault, command.get_name());
+  return fmt::format("{0}: {1}. 'monograin {0} --help' says more", whole_name, fault);
 }
 
 /// True if the first word is no command of this version; prints a message, because the parser would only report a

@@ -32,7 +32,10 @@ _monograin() {
     calibrate) options="--output --confidence --report --quiet --strict --help" ;;
     design) options="--output --help" ;;
     data) options="--x --y --plot --output --help" ;;
-    export) options="--set --output --wall --help" ;;
+    export)
+      options="--set --output --help"
+      [[ ${COMP_WORDS[2]} == table ]] && options+=" --wall"
+      ;;
     sweep) options="--jobs --shard --design-only --output --quiet --help" ;;
     sensitivity) options="--jobs --confidence --output --help" ;;
     bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --help" ;;

@@ -320,7 +320,7 @@ void add_plot_command(CLI::App& app, Action& action) {
       "the dimensions of the axes. The folder of a calibration: its data without what the machine adds");
   command->add_flag(
       "--vtk", options->writes_vtk,
-      "Write particle and walls at each output point for ParaView instead [folder vtk in that of the run]");
+      "Write particle and walls at up to 200 instants for ParaView instead [folder vtk in that of the run]");
   command->footer("Example: monograin plot runs/die -o die.pdf");
   command->callback([options, &action] { action = [options] { return plot(*options); }; });
 }

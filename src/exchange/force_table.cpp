@@ -7,8 +7,6 @@
 #include <array>
 #include <stdexcept>
 
-#include "monograin/version.hpp"
-
 namespace monograin {
 namespace {
 
@@ -21,7 +19,9 @@ bool moves(const Motion& motion, std::size_t contact_class) {
 
 std::size_t index_of(const Motion& motion, const std::optional<std::string>& name) {
   for (std::size_t i = 0; i < motion.classes.size(); ++i) {
-    if (name ? motion.classes[i] == *name : moves(motion, i)) return i;
+    if (name && motion.classes[i] != *name) continue;
+    if (moves(motion, i)) return i;
+    if (name) throw std::invalid_argument(fmt::format("the walls of contact class '{}' do not move", *name));
   }
   if (!name) throw std::invalid_argument("no wall moves");
   throw std::invalid_argument(
@@ -34,7 +34,7 @@ Table force_table(const Motion& motion, const std::optional<std::string>& contac
   const std::size_t index = index_of(motion, contact_class);
   const std::string& name = motion.classes[index];
   Table table({{"branch"}, {name + ".displacement", "m"}, {name + ".force", "N"}});
-  table.header = {{"program", fmt::format("monograin {}", version())}};
+  table.header = motion.header;
   const ContactInstant* last = nullptr;
   double direction = 0.0;
   double branch = 1.0;

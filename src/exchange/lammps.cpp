@@ -7,13 +7,12 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "catalogue.hpp"
-#include "monograin/version.hpp"
 #include "scenario/model_input.hpp"
 #include "system/lammps_law.hpp"
 #include "system/resolution.hpp"
@@ -26,8 +25,8 @@ constexpr double k_deviation = 1e-7;
 /// Largest motion of a wall in one step, over R0. Steps of 1e-3 R0 make errors of a few per cent while an mdr contact
 /// unloads.
 constexpr double k_largest_step = 1e-5;
-/// Steps between two rows of the CSV file.
-constexpr int k_steps_per_row = 100;
+/// Steps between two rows of the CSV file. Every piece has a multiple of it, so that its end is a row.
+constexpr long k_steps_per_row = 100;
 /// Density [kg/m3]. The particle does not move, so that no result depends on it.
 constexpr double k_density = 1000.0;
 
@@ -49,6 +48,14 @@ std::string plain_name(std::string_view name) {
   return plain;
 }
 
+/// Text for a comment. LAMMPS joins lines at an ampersand and at quotes, also in comments.
+std::string comment_text(std::string text) {
+  for (char& c : text) {
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0 || c == '&' || c == '"') c = ' ';
+  }
+  return text;
+}
+
 /// Plain names that differ from each other.
 std::vector<std::string> plain_names(const std::vector<std::string>& names) {
   std::vector<std::string> plain;
@@ -66,18 +73,18 @@ class LammpsInput {
   LammpsInput(const CheckedScenario& scenario, const Motion& motion, const LammpsLaw& law)
       : scenario_(scenario), motion_(motion), law_(law), classes_(plain_names(motion.classes)) {
     std::vector<std::string> names;
-    for (const MovingWall& wall : motion.walls) names.push_back(wall.name);
+    for (const MovingWall& wall : motion.walls) names.push_back("wall_" + wall.name);
     walls_ = plain_names(names);
     for (const std::string& name : classes_) variables_.push_back("d_" + name);
     if (!scenario.loading.centre_is_free) return;
     for (const char axis : k_axes) variables_.push_back(fmt::format("centre_{}", axis));
   }
 
-  std::string text(std::string_view csv) {
+  std::string text() {
     head();
     particle();
     for (std::size_t i = 0; i < walls_.size(); ++i) wall(i);
-    output(csv);
+    output();
     pieces();
     return std::move(text_);
   }
@@ -89,9 +96,11 @@ class LammpsInput {
   }
 
   void head() {
-    line("# program: monograin {}", version());
-    line("# {}", scenario_.title.empty() ? scenario_.name : scenario_.title);
-    line("# Scenario {} of model {} as a test in LAMMPS, with its package GRANULAR.", scenario_.name, scenario_.model);
+    constexpr std::array k_shown{"program", "title", "scenario", "scenario_digest", "status", "model"};
+    for (const auto& [key, value] : motion_.header) {
+      if (std::ranges::find(k_shown, key) != k_shown.end()) line("# {}: {}", key, comment_text(value));
+    }
+    line("# A test in LAMMPS with its package GRANULAR, without friction and damping.");
     line("# The particle does not move. The time step has no meaning: a step moves no wall by more than {} R0.",
          k_largest_step);
     if (scenario_.loading.centre_is_free) line("# The centre is free: walls move as seen from the centre.");
@@ -100,7 +109,7 @@ class LammpsInput {
 
   void particle() {
     const double half = 4.0 * scenario_.radius;
-    line("\nunits si\natom_style sphere\natom_modify map array\ncomm_modify vel yes\nnewton off\nboundary f f f");
+    line("\nunits si\natom_style sphere 1\natom_modify map array\ncomm_modify vel yes\nnewton off\nboundary f f f");
     line("region box block {0} {1} {0} {1} {0} {1}", -half, half);
     line("create_box 1 box\ncreate_atoms 1 single 0 0 0");
     line("set group all diameter {} density {}", 2.0 * scenario_.radius, k_density);
@@ -136,7 +145,7 @@ class LammpsInput {
   }
 
   /// Writes displacement and force of the first wall of each class to the CSV file.
-  void output(std::string_view csv) {
+  void output() {
     std::vector<std::string> headings;
     std::vector<std::string> values;
     line("\n# force of one wall of each contact class, positive in compression [N]");
@@ -150,48 +159,46 @@ class LammpsInput {
       headings.push_back(fmt::format("{0}.displacement[m],{0}.force[N]", motion_.classes[i]));
       values.push_back(fmt::format("$(v_d_{0}:%.15g),$(v_F_{0}:%.15g)", classes_[i]));
     }
-    line("fix history all print {} \"{}\" file {} title \"{}\" screen no", k_steps_per_row, fmt::join(values, ","), csv,
-         fmt::join(headings, ","));
+    line("fix rows all print {} \"{}\" file {}.lammps.csv title \"{}\" screen no", k_steps_per_row,
+         fmt::join(values, ","), plain_name(scenario_.name), fmt::join(headings, ","));
     line("thermo 0");
   }
 
   /// One run for each piece in which all walls move at constant velocity.
   void pieces() {
-    const std::vector<MotionInstant>& instants = motion_.instants;
     std::vector<std::vector<double>> path;
-    for (const MotionInstant& instant : instants) path.push_back(positions(instant));
+    for (const MotionInstant& instant : motion_.instants) path.push_back(positions(instant));
     for (std::size_t begin = 0; begin + 1 < path.size();) {
       const std::size_t end = end_of_piece(path, begin);
       piece(path[begin], path[end]);
       begin = end;
     }
+    if (!has_run_) line("\nrun 0");
   }
 
-  /// Last instant up to which a motion at constant velocity deviates by no more than k_deviation from the run.
+  /// Last instant to which a motion at constant velocity deviates by no more than k_deviation from the run. Each
+  /// instant bounds the velocities of all later ones.
   [[nodiscard]] std::size_t end_of_piece(const std::vector<std::vector<double>>& path, std::size_t begin) const {
-    std::size_t end = begin + 1;
-    while (end + 1 < path.size() && is_straight(path, begin, end + 1)) ++end;
-    return end;
-  }
-
-  [[nodiscard]] bool is_straight(const std::vector<std::vector<double>>& path, std::size_t begin,
-                                 std::size_t end) const {
-    const double duration = motion_.instants[end].time - motion_.instants[begin].time;
-    for (std::size_t i = begin + 1; i < end; ++i) {
-      const double share = (motion_.instants[i].time - motion_.instants[begin].time) / duration;
+    std::vector<double> least(variables_.size(), -k_infinity);
+    std::vector<double> most(variables_.size(), k_infinity);
+    for (std::size_t end = begin + 1; end < path.size(); ++end) {
+      const double duration = motion_.instants[end].time - motion_.instants[begin].time;
+      const double slack = k_deviation * scenario_.radius / duration;
       for (std::size_t k = 0; k < variables_.size(); ++k) {
-        const double expected = std::lerp(path[begin][k], path[end][k], share);
-        if (std::abs(path[i][k] - expected) > k_deviation * scenario_.radius) return false;
+        const double velocity = (path[end][k] - path[begin][k]) / duration;
+        if (velocity < least[k] || velocity > most[k]) return end - 1;
+        least[k] = std::max(least[k], velocity - slack);
+        most[k] = std::min(most[k], velocity + slack);
       }
     }
-    return true;
+    return path.size() - 1;
   }
 
   void piece(const std::vector<double>& from, const std::vector<double>& to) {
     double largest = 0.0;
     for (std::size_t k = 0; k < from.size(); ++k) largest = std::max(largest, std::abs(to[k] - from[k]));
-    const auto steps =
-        static_cast<long>(std::ceil((1.0 - k_same_number) * largest / (k_largest_step * scenario_.radius)));
+    const double row = k_largest_step * static_cast<double>(k_steps_per_row) * scenario_.radius;
+    const long steps = k_steps_per_row * static_cast<long>(std::ceil((1.0 - k_same_number) * largest / row));
     if (steps == 0) return;
     line("");
     for (std::size_t k = 0; k < from.size(); ++k) {
@@ -200,6 +207,7 @@ class LammpsInput {
       line("variable {} equal {}{}", variables_[k], from[k], moving);
     }
     line("run {}", steps);
+    has_run_ = true;
   }
 
   /// Values of the variables at an instant.
@@ -218,6 +226,7 @@ class LammpsInput {
   std::vector<std::string> classes_;  ///< names of contact classes and walls as LAMMPS takes them
   std::vector<std::string> walls_{};
   std::vector<std::string> variables_{};  ///< names of variables: displacements of classes, position of the centre
+  bool has_run_ = false;
   std::string text_{};
 };
 
@@ -234,9 +243,8 @@ LammpsLaw lammps_law_of(const CheckedScenario& scenario) {
                                           scenario.model, fmt::join(names, " and ")));
 }
 
-std::string lammps_input(const CheckedScenario& scenario, const Motion& motion, const LammpsLaw& law,
-                         std::string_view csv) {
-  return LammpsInput(scenario, motion, law).text(csv);
+std::string lammps_input(const CheckedScenario& scenario, const Motion& motion, const LammpsLaw& law) {
+  return LammpsInput(scenario, motion, law).text();
 }
 
 }  // namespace monograin

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "exchange/motion.hpp"
 #include "scenario/scenario.hpp"
@@ -19,11 +18,9 @@ namespace monograin {
 ///
 /// Walls follow the motion of the recorded run, in pieces of constant velocity that deviate from it by at most
 /// 1e-7 R0. With a free centre they move as seen from the centre. A step of LAMMPS moves no wall by more than 1e-5 R0.
-/// LAMMPS writes displacement and force of one wall of each contact class to a CSV file, with the headings of a
-/// history.
+/// LAMMPS writes displacement and force of one wall of each contact class to the file NAME.lammps.csv, with the
+/// headings of a history and a row at each end of a piece.
 /// @param motion  of the scenario's run
-/// @param csv     name of the file that LAMMPS writes
-[[nodiscard]] std::string lammps_input(const CheckedScenario& scenario, const Motion& motion, const LammpsLaw& law,
-                                       std::string_view csv);
+[[nodiscard]] std::string lammps_input(const CheckedScenario& scenario, const Motion& motion, const LammpsLaw& law);
 
 }  // namespace monograin

@@ -26,6 +26,12 @@ class OptionalColumn {
   double otherwise_;
 };
 
+/// Column that every history has.
+std::vector<double> column_of(const Table& history, const std::string& name) {
+  if (!history.find(name)) throw std::invalid_argument("the history has no column " + name);
+  return history.column(name);
+}
+
 struct ContactColumns {
   std::vector<double> displacement;
   std::vector<double> force;
@@ -40,7 +46,7 @@ Motion motion_of(const CheckedScenario& scenario, const Table& history) {
   if (scene.classes.empty()) {
     throw std::invalid_argument(fmt::format("model {} has no particle between walls", scenario.model));
   }
-  Motion motion{.initial_radius = scenario.radius};
+  Motion motion{.header = history.header, .initial_radius = scenario.radius};
   std::vector<ContactColumns> contacts;
   for (std::size_t i = 0; i < scene.classes.size(); ++i) {
     const ContactClass& contact = scene.classes[i];
@@ -48,11 +54,11 @@ Motion motion_of(const CheckedScenario& scenario, const Table& history) {
     for (std::size_t k = 0; k < contact.normals.size(); ++k) {
       motion.walls.push_back({scene.walls[i][k], contact.normals[k], i});
     }
-    contacts.push_back({history.column(contact.name + ".displacement"), history.column(contact.name + ".force"),
+    contacts.push_back({column_of(history, contact.name + ".displacement"), column_of(history, contact.name + ".force"),
                         OptionalColumn(history, contact.name + ".contact_radius", k_nan),
                         OptionalColumn(history, contact.name + ".pressure", k_nan)});
   }
-  const std::vector<double> time = history.column("time");
+  const std::vector<double> time = column_of(history, "time");
   const OptionalColumn radius(history, "apparent_radius", scenario.radius);
   const std::array centre{OptionalColumn(history, "centre_x", 0.0), OptionalColumn(history, "centre_y", 0.0),
                           OptionalColumn(history, "centre_z", 0.0)};

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "history/table.hpp"
@@ -36,8 +37,9 @@ struct MotionInstant {
 
 /// Motion of particle and walls in a recorded run.
 struct Motion {
-  double initial_radius = 0.0;         ///< R0 [m]
-  std::vector<std::string> classes{};  ///< names of the contact classes
+  std::vector<std::pair<std::string, std::string>> header{};  ///< header lines of the history
+  double initial_radius = 0.0;                                ///< R0 [m]
+  std::vector<std::string> classes{};                         ///< names of the contact classes
   std::vector<MovingWall> walls{};
   std::vector<MotionInstant> instants{};  ///< times increase; the state just after an event stands for its instant
 
@@ -48,8 +50,8 @@ struct Motion {
 };
 
 /// Reads the motion from the history of a scenario's run.
-/// @throws std::invalid_argument if the model has no walls
-/// @throws std::out_of_range if the history lacks the displacement or the force of a contact class
+/// @throws std::invalid_argument if the model has no walls, or the history lacks the displacement or the force of a
+/// contact class
 [[nodiscard]] Motion motion_of(const CheckedScenario& scenario, const Table& history);
 
 }  // namespace monograin

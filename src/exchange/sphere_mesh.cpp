@@ -82,8 +82,9 @@ SurfaceMesh unit_sphere(int levels) {
 }
 
 std::vector<CutPoint> cut_sphere(const SurfaceMesh& sphere, double radius, std::span<const CuttingPlane> planes) {
-  // Corners closer to an edge than about half a side of a triangle: of N triangles each has the area 4 pi/N.
-  const double reach = 0.6 * std::sqrt(4.0 * std::numbers::pi / static_cast<double>(sphere.triangles.size()));
+  // The least height of a triangle is more than twice this distance, so that no triangle is folded: each of N has about
+  // the area 4 pi/N.
+  const double reach = 0.4 * std::sqrt(4.0 * std::numbers::pi / static_cast<double>(sphere.triangles.size()));
   std::vector<CutPoint> points;
   for (const Eigen::Vector3d& corner : sphere.points) {
     const Eigen::Vector3d direction = moved_to_edge(corner, radius, planes, reach);

@@ -31,7 +31,7 @@ struct CutPoint {
 };
 
 /// Corners of a sphere, with all that lies beyond the planes moved onto them, towards the centre. Corners near the edge
-/// of a cut are moved to the edge, so that the edge is a circle; the triangles stay those of the unit sphere.
+/// of a cut are moved to the edge, which is a circle. The triangles stay those of the unit sphere.
 /// @param sphere  as unit_sphere() makes it
 [[nodiscard]] std::vector<CutPoint> cut_sphere(const SurfaceMesh& sphere, double radius,
                                                std::span<const CuttingPlane> planes);

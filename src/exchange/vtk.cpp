@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -14,6 +16,7 @@
 
 #include "exchange/sphere_mesh.hpp"
 #include "scenario/text_file.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin {
 namespace {
@@ -98,15 +101,43 @@ class PolyData {
   std::string appended_;
 };
 
-std::string particle_text(const Motion& motion, const MotionInstant& instant, const SurfaceMesh& sphere) {
-  std::vector<CuttingPlane> planes;
-  for (const MovingWall& wall : motion.walls) planes.push_back({wall.normal, motion.distance(wall, instant)});
+/// Planes that cut the particle, as the motion goes on.
+class Cuts {
+ public:
+  explicit Cuts(const Motion& motion) : motion_(motion) {
+    for (const MovingWall& wall : motion.walls) planes_.push_back({wall.normal, k_infinity});
+  }
+
+  /// A wall that bears a force cuts where it is; another one leaves the cut where it last pressed, or pushes it in.
+  void follow(const MotionInstant& instant) {
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      const MovingWall& wall = motion_.walls[i];
+      const double distance = motion_.distance(wall, instant);
+      const bool presses = instant.contacts[wall.contact_class].force != 0.0;
+      planes_[i].distance = presses ? distance : std::min(planes_[i].distance, distance);
+    }
+  }
+  [[nodiscard]] std::span<const CuttingPlane> planes() const noexcept { return planes_; }
+
+ private:
+  const Motion& motion_;
+  std::vector<CuttingPlane> planes_{};
+};
+
+/// True if a contact has a pressure at some time.
+bool has_pressures(const Motion& motion) {
+  return std::ranges::any_of(motion.instants, [](const MotionInstant& instant) {
+    return std::ranges::any_of(instant.contacts, [](const ContactInstant& c) { return !std::isnan(c.pressure); });
+  });
+}
+
+std::string particle_text(const Motion& motion, const MotionInstant& instant, std::span<const CuttingPlane> planes,
+                          const SurfaceMesh& sphere, bool has_pressure) {
   const std::vector<CutPoint> cut = cut_sphere(sphere, instant.radius, planes);
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector3d> displacements;
   std::vector<double> pressures;
   std::vector<double> walls;
-  bool has_pressure = true;
   for (std::size_t i = 0; i < cut.size(); ++i) {
     const Eigen::Vector3d& from_centre = cut[i].position;
     positions.emplace_back(instant.centre + from_centre);
@@ -117,11 +148,10 @@ std::string particle_text(const Motion& motion, const MotionInstant& instant, co
       const MovingWall& wall = motion.walls[static_cast<std::size_t>(cut[i].plane)];
       const ContactInstant& contact = instant.contacts[wall.contact_class];
       const double from_axis = (from_centre - from_centre.dot(wall.normal) * wall.normal).norm();
-      if (contact.force != 0.0 && from_axis <= contact.radius) pressure = contact.pressure;
+      if (contact.force != 0.0 && !(from_axis > contact.radius)) pressure = contact.pressure;
     }
     pressures.push_back(pressure);
   }
-  for (const ContactInstant& contact : instant.contacts) has_pressure &= !std::isnan(contact.pressure);
   std::vector<int> corners;
   for (const auto& triangle : sphere.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
   PolyData data(positions);
@@ -160,16 +190,20 @@ std::string walls_text(const Motion& motion, const MotionInstant& instant) {
 
 void write_vtk(const Motion& motion, const fs::path& folder) {
   const SurfaceMesh sphere = unit_sphere(k_sphere_levels);
+  const bool has_pressure = has_pressures(motion);
   const std::size_t count = motion.instants.size();
-  const std::size_t stride = (count + k_most_instants - 1) / k_most_instants;
+  const std::size_t written = std::min(count, k_most_instants);
+  Cuts cuts(motion);
   std::string list;
   std::size_t number = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    if (i % stride != 0 && i + 1 != count) continue;
     const MotionInstant& instant = motion.instants[i];
-    const std::pair<std::string, std::string> parts[] = {{"particle", particle_text(motion, instant, sphere)},
-                                                         {"walls", walls_text(motion, instant)}};
-    for (std::size_t part = 0; part < std::size(parts); ++part) {
+    cuts.follow(instant);
+    // The first and the last are among them.
+    if (written > 1 && i != number * (count - 1) / (written - 1)) continue;
+    const std::array parts{std::pair{"particle", particle_text(motion, instant, cuts.planes(), sphere, has_pressure)},
+                           std::pair{"walls", walls_text(motion, instant)}};
+    for (std::size_t part = 0; part < parts.size(); ++part) {
       const std::string name = fmt::format("{}-{:04}.vtp", parts[part].first, number);
       write_text_file(folder / name, parts[part].second);
       list += fmt::format("<DataSet timestep=\"{}\" part=\"{}\" file=\"{}\"/>\n", instant.time, part, name);

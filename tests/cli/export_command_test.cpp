@@ -20,6 +20,7 @@ TEST_F(ExportCommand, PrintsForceOverDisplacementAsATable) {
   const Outcome outcome = monograin("export table " + k_scenarios + "uniaxial.toml' --set output.points=10");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(outcome.out.starts_with("# program: monograin "));
+  EXPECT_TRUE(contains(outcome.out, "\n# status: complete\n"));
   EXPECT_TRUE(contains(outcome.out, "\nbranch,axial.displacement[m],axial.force[N]\n1,0,0\n"));
   EXPECT_EQ(files(), std::vector<std::string>{});
 }
@@ -47,7 +48,14 @@ TEST_F(ExportCommand, NamesWhatItExpectsInstead) {
   const Outcome packing = monograin("export table " + k_scenarios + "packing.toml'");
   EXPECT_EQ(packing.code, 2);
   EXPECT_TRUE(contains(packing.err, "model packing has no particle between walls")) << packing.err;
-  EXPECT_EQ(monograin("export").code, 2);
+  for (const char* line : {"export", "export chart"}) {
+    const Outcome kind = monograin(line);
+    EXPECT_EQ(kind.code, 2);
+    EXPECT_TRUE(contains(kind.err, "monograin: export: expected one of lammps, table.")) << kind.err;
+  }
+  const Outcome file = monograin("export table");
+  EXPECT_EQ(file.code, 2);
+  EXPECT_TRUE(contains(file.err, "monograin: export table: FILE is missing; expected: Scenario file")) << file.err;
 }
 
 TEST_F(ExportCommand, KeepsWhatARunReachedBeforeItLeftTheDomain) {
@@ -68,6 +76,15 @@ TEST_F(ExportCommand, WritesTheParticleOfARunForParaView) {
   EXPECT_TRUE(std::filesystem::exists(run / "vtk" / "walls-0000.vtp"));
   EXPECT_EQ(monograin("plot '" + run.string() + "' --vtk -o other").code, 0);
   EXPECT_EQ(text("other/run.pvd"), read_text(run / "vtk" / "run.pvd"));
+}
+
+TEST_F(ExportCommand, NamesAColumnThatAHistoryLacks) {
+  ASSERT_EQ(
+      shell("monograin run " + k_scenarios + "hertz.toml' -o h && sed -i s/axial.force/axial.push/ h/history.csv").code,
+      0);
+  const Outcome outcome = monograin("plot h --vtk");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(contains(outcome.err, "h: the history has no column axial.force")) << outcome.err;
 }
 
 TEST_F(ExportCommand, RefusesParaViewWithoutAParticleOrWithOtherChoices) {

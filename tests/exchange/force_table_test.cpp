@@ -39,6 +39,12 @@ TEST(ForceTable, TakesTheWallThatIsAskedForOrTheFirstThatMoves) {
                        "there is no contact class 'roof'; the scene has floor, punch"));
 }
 
+TEST(ForceTable, SaysThatTheWallDoesNotMove) {
+  const Motion motion = motion_of_run(mdr_scenario(Configuration::die, 50.0, 0.3, path({0.1})));
+  EXPECT_EQ(refusal<std::invalid_argument>([&] { return force_table(motion, "lateral"); }),
+            "the walls of contact class 'lateral' do not move");
+}
+
 TEST(ForceTable, SaysThatNoWallMoves) {
   const Motion motion = motion_of_run(hertz_scenario(Configuration::simple, {hold()}));
   EXPECT_EQ(refusal<std::invalid_argument>([&] { return force_table(motion, std::nullopt); }), "no wall moves");

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "exchange/motion_of_run.hpp"
+#include "history/run.hpp"
 #include "history/table.hpp"
 #include "support/refusal.hpp"
 #include "support/scenario_texts.hpp"
@@ -23,7 +24,7 @@ namespace monograin {
 namespace {
 
 std::string input_of(const CheckedScenario& scenario) {
-  return lammps_input(scenario, motion_of_run(scenario), lammps_law_of(scenario), "forces.csv");
+  return lammps_input(scenario, motion_of_run(scenario), lammps_law_of(scenario));
 }
 
 /// A particle of mdr with the rule of growth that LAMMPS has.
@@ -79,7 +80,8 @@ TEST(LammpsInput, FollowsAWallUnderAForceAlongItsCurve) {
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     EXPECT_NEAR(pieces[i].from.at("d_axial"), pieces[i - 1].from.at("d_axial") + pieces[i - 1].change.at("d_axial"),
                 1e-15);
-    EXPECT_LE(std::abs(pieces[i].change.at("d_axial")), 1e-5 * pieces[i].steps * (1.0 + 1e-12));
+    EXPECT_LE(std::abs(pieces[i].change.at("d_axial")), 1e-5 * pieces[i].steps * (1.0 + 1e-8));
+    EXPECT_EQ(std::fmod(pieces[i].steps, 100.0), 0.0);
   }
 }
 
@@ -89,15 +91,52 @@ TEST(LammpsInput, MovesWallsAsSeenFromAFreeCentre) {
               {wall("floor", -Eigen::Vector3d::UnitZ()), wall("punch", Eigen::Vector3d::UnitZ(), path({0.2}))});
   scenario.loading.centre_is_free = true;
   const std::string input = input_of(scenario);
-  EXPECT_TRUE(contains(input, "variable m_floor_z equal 1*v_d_floor-v_centre_z\n")) << input;
-  EXPECT_TRUE(contains(input, "variable m_punch_z equal -1*v_d_punch-v_centre_z\n")) << input;
+  EXPECT_TRUE(contains(input, "variable m_wall_floor_z equal 1*v_d_floor-v_centre_z\n")) << input;
+  EXPECT_TRUE(contains(input, "variable m_wall_punch_z equal -1*v_d_punch-v_centre_z\n")) << input;
   EXPECT_NEAR(pieces_of(input).back().from.at("centre_z") + pieces_of(input).back().change.at("centre_z"), -0.1, 1e-6);
+}
+
+TEST(LammpsInput, StaysWithinItsDeviationFromTheRun) {
+  const CheckedScenario scenario = mdr(Configuration::simple, {force_ramp(0.01), force_ramp(0.0)});
+  const Motion motion = motion_of_run(scenario);
+  const std::vector<Piece> pieces = pieces_of(input_of(scenario));
+  // Pieces begin and end at instants of the run; between them the walls move in proportion to the time.
+  std::size_t i = 0;
+  for (const Piece& piece : pieces) {
+    const double from = piece.from.at("d_axial");
+    const double to = from + piece.change.at("d_axial");
+    std::size_t end = i + 1;
+    while (std::abs(motion.instants[end].contacts[0].displacement - to) > 1e-15) ++end;
+    for (std::size_t k = i; k <= end; ++k) {
+      const double share =
+          (motion.instants[k].time - motion.instants[i].time) / (motion.instants[end].time - motion.instants[i].time);
+      EXPECT_NEAR(motion.instants[k].contacts[0].displacement, std::lerp(from, to, share), 1.0001e-7);
+    }
+    i = end;
+  }
+  EXPECT_EQ(i + 1, motion.instants.size());
+}
+
+TEST(LammpsInput, RunsOnceWhereNoWallMoves) {
+  EXPECT_TRUE(input_of(hertz_scenario(Configuration::simple, {hold()})).ends_with("\nrun 0\n"));
+}
+
+TEST(LammpsInput, KeepsTitleAndNameFromBeingCommands) {
+  CheckedScenario scenario = die();
+  scenario.title = "one\nshell touch file &";
+  scenario.name = "my $new# test";
+  const auto run = run_scenario(scenario);
+  const std::string input = lammps_input(scenario, motion_of(scenario, run.record.history), lammps_law_of(scenario));
+  EXPECT_FALSE(contains(input, "\nshell"));
+  EXPECT_FALSE(contains(input, "&"));
+  EXPECT_TRUE(contains(input, " file my__new__test.lammps.csv ")) << input;
+  EXPECT_TRUE(contains(input, "# status: complete\n"));
 }
 
 TEST(LammpsInput, PutsAWallWithAGapAway) {
   const std::string input = input_of(parse_scenario(k_late_wall_text, "late.toml"));
   EXPECT_EQ(pieces_of(input).front().from.at("d_late"), -2e-5);
-  EXPECT_TRUE(contains(input, "region late plane 0.01 0 0 -1 0 0 side in move"));
+  EXPECT_TRUE(contains(input, "region wall_late plane 0.01 0 0 -1 0 0 side in move"));
 }
 
 TEST(LammpsInput, NamesWallsInLettersDigitsAndUnderscoresThatDiffer) {
@@ -112,7 +151,7 @@ TEST(LammpsInput, NamesWallsInLettersDigitsAndUnderscoresThatDiffer) {
     EXPECT_TRUE(std::regex_match((*i)[1].str(), std::regex("\\w+")));
     EXPECT_TRUE(names.insert((*i)[1]).second) << (*i)[1];
   }
-  EXPECT_EQ(names, (std::set<std::string>{"a_b", "a_b_", "cp", "cm"}));
+  EXPECT_EQ(names, (std::set<std::string>{"wall_a_b", "wall_a_b_", "wall_cp", "wall_cm"}));
 }
 
 TEST(LammpsInput, NamesTheLawWithTheMaterial) {
@@ -122,6 +161,8 @@ TEST(LammpsInput, NamesTheLawWithTheMaterial) {
       contains(input_of(parse_scenario(k_hertz_text, "hertz.toml")),
                "pair_coeff * * hertz/material 5e+10 0 0.22 tangential linear_nohistory 0 0 damping velocity\n"));
 }
+
+TEST(LammpsInput, LetsRadiiChange) { EXPECT_TRUE(contains(input_of(die()), "\natom_style sphere 1\n")); }
 
 TEST(LammpsInput, SaysWhatLammpsComputesOtherwise) {
   EXPECT_TRUE(contains(input_of(die()), "# LAMMPS multiplies the force of a wall by 1 + exp(10.7 d/R0 - 10)"));
@@ -136,6 +177,9 @@ TEST(LammpsLaw, RefusesModelsAndOptionsWithoutACounterpart) {
   EXPECT_EQ(reason(with(die(), "radius_rule", "gated")), "LAMMPS computes mdr with radius_rule = 'yielded' only");
   EXPECT_EQ(reason(with(die(), "elastic_profile", "parabola")),
             "LAMMPS computes mdr with elastic_profile = 'ellipse' only");
+  CheckedScenario auxetic = die();
+  auxetic.material["poisson_ratio"] = -0.2;
+  EXPECT_EQ(reason(auxetic), "LAMMPS takes no negative Poisson's ratio for mdr");
 }
 
 /// LAMMPS itself, where it is installed with its package GRANULAR.
@@ -150,7 +194,7 @@ TEST(LammpsInput, GivesTheForcesOfHertzInLammps) {
   const std::string command = "cd '" + folder.path().string() +
                               "' && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 lmp -in in > out 2>&1";
   ASSERT_EQ(std::system(command.c_str()), 0) << read_text(folder.path() / "out");
-  const Table forces = read_csv(folder.path() / "forces.csv");
+  const Table forces = read_csv(folder.path() / (scenario.name + ".lammps.csv"));
   const std::vector<double> displacement = forces.column("punch.displacement[m]");
   const std::vector<double> punch = forces.column("punch.force[N]");
   const std::vector<double> floor = forces.column("floor.force[N]");
@@ -158,9 +202,10 @@ TEST(LammpsInput, GivesTheForcesOfHertzInLammps) {
   const double stiffness = 4.0 / 3.0 / (1.0 - std::pow(scenario.material.at("poisson_ratio"), 2));
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     // Half of the displacement is the centre's.
-    EXPECT_NEAR(punch[i], stiffness * std::pow(0.5 * displacement[i], 1.5), 1e-7);
-    EXPECT_NEAR(floor[i], punch[i], 1e-7);
+    EXPECT_NEAR(punch[i], stiffness * std::pow(0.5 * displacement[i], 1.5), 1e-9);
+    EXPECT_NEAR(floor[i], punch[i], 1e-9);
   }
+  EXPECT_NEAR(displacement.back(), 0.03, 1e-14);
 }
 
 }  // namespace
