@@ -125,8 +125,8 @@ bool CentreSearch::try_step(Contacts& contacts, double done, double next, double
 }
 
 bool CentreSearch::follow(Contacts& contacts, std::span<const Target> targets, std::span<double> y) {
-  const bool are_others = support_.sort_loaded(contacts, targets, y);
-  if (!are_others || support_.unheld_directions(contacts).trace() < 0.5) return false;
+  const bool others_remain = support_.sort_loaded(contacts, targets, y);
+  if (!others_remain || support_.unheld_directions(contacts).trace() < 0.5) return false;
   std::ranges::copy(targets, ends_.begin());
   set_targets_of(contacts, y, ends_, starts_);
   double size = contacts.centre_of(y).norm();
