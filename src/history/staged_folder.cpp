@@ -282,8 +282,8 @@ StagedFolder::StagedFolder(const fs::path& target, std::string_view marker, std:
       const LockedFolder one_at_a_time(target_, LOCK_EX);
       clear_leftovers(target_, k_staged_infix, target_, marker_);
       clear_leftovers(target_.parent_path(), prefix_beside(target_), target_, marker_);
+      replaces_own_ = holds_own_result(target_, marker_);
     }
-    replaces_own_ = holds_own_result(target_, marker_);
     for (const std::string_view name : names) check_name(std::string(name));
   } else {
     make_parents();
@@ -354,16 +354,16 @@ void StagedFolder::publish(double effort) {
   const auto flush = [is_worth_it = effort > k_worth_flushing](const fs::path& path) {
     if (is_worth_it) sync_to_disk(path);
   };
-  for (const std::string& name : names_in(staged_, marker_)) {
-    check_name(name);
-    flush(staged_ / name);
-  }
+  const std::vector<std::string> names = names_in(staged_, marker_);
+  for (const std::string& name : names) flush(staged_ / name);
   write_list(staged_);
   flush(staged_ / k_written_files);
   flush(staged_);
   // An existing target is never renamed over, even if empty: a process that works in it would lose its folder.
   if (fs::exists(target_) || rename(staged_.c_str(), target_.c_str()) != 0) {
     const LockedFolder one_at_a_time(target_, LOCK_EX);
+    replaces_own_ = holds_own_result(target_, marker_);  // of another process, since this one began
+    for (const std::string& name : names) check_name(name);
     if (exchange(staged_, target_)) {
       rescue(staged_, target_);
     } else {
