@@ -238,6 +238,43 @@ INSTANTIATE_TEST_SUITE_P(AllForms, MdrPullOff, ::testing::ValuesIn(k_integrators
   return name;
 });
 
+// --- warnings
+
+/// The warning that pull-off is not predicted well: the number that it names; NaN without one.
+double doubt_of_pull_off(const TestRun& result) {
+  for (const Diagnostic& warning : result.scene.system->warnings()) {
+    if (warning.message.starts_with("pull-off is not predicted well")) return warning.value;
+  }
+  return std::nan("");
+}
+
+TEST(MdrAdhesionWarning, ComparesTheCriticalDiameterOfItsControlWithThePlasticZone) {
+  const double yield_stress = 1.0 / 50.0;
+  for (const double dg : {1e-6, 2e-6, 1e-5}) {
+    const double zone = k_modulus * dg / (pi * yield_stress * yield_stress);
+    const auto expect_doubt = [&](const TestRun& result, double control_factor) {
+      const double critical = std::cbrt(control_factor * control_factor * pi * dg / (8.0 * k_modulus));
+      const double ratio = 2.0 * critical / zone;
+      const double doubt = doubt_of_pull_off(result);
+      if (ratio < 15.0) {
+        EXPECT_LE(relative_error(doubt, ratio), 1e-12) << "dg = " << dg << ", control factor " << control_factor;
+      } else {
+        EXPECT_TRUE(std::isnan(doubt)) << "dg = " << dg << ", control factor " << control_factor;
+      }
+    };
+    expect_doubt(run(jkr(path({0.005, -0.01}), dg)), 1.0);
+    expect_doubt(run(jkr({ramp(0.005), force_ramp(-10.0 * dg)}, dg)), 3.0);
+  }
+}
+
+TEST(MdrAdhesionWarning, ComparesTheCriticalRadiusWithThatOfTheRing) {
+  const TestRun result = run(adhering(mdr_scenario(Configuration::simple, 50.0, 0.3, path({0.3, 0.0})), 1e-5));
+  const double ring = 1.75 * std::pow(0.3 - result.at_event("yield", "axial.overlap") - 0.135, 0.75);
+  const double critical = before_event(result, "pull-off", "axial.contact_radius");
+  ASSERT_LT(critical, ring);
+  EXPECT_LE(relative_error(doubt_of_pull_off(result), critical / ring), 1e-6);
+}
+
 // --- hysteresis
 
 TEST(MdrAdhesiveContact, AdheresAgainOnlyWhenItIsPressedAgain) {

@@ -140,6 +140,29 @@ TEST(MdrContactBranch, HasTheDerivativesOfItsForce) {
   }
 }
 
+TEST(MdrContactBranch, HasTheDerivativesOfItsForceWhereItContinuesOddly) {
+  for (Case c : cases()) {
+    if (c.branch.regime == Regime::fully_plastic) continue;
+    c.law.continues_off_branch = true;
+    const double touch = c.branch.touching_overlap(c.law, k_growth);
+    const double depth = c.overlaps[0] - touch;
+    const double overlap = touch - depth;
+    const double step = 1e-4 * depth;
+    const Contact at = c.branch.contact(c.law, k_growth, overlap);
+    const auto by_overlap = [&](double x) { return c.branch.contact(c.law, k_growth, x).force; };
+    EXPECT_NEAR(at.by_overlap, central_difference(by_overlap, overlap, step), 1e-7 * at.by_overlap) << c.name;
+    if (c.branch.regime == Regime::elastic) {  // the opening of a dent moves with the radius
+      const auto by_radius = [&](double r) { return c.branch.contact(c.law, r, overlap).force; };
+      EXPECT_NEAR(at.by_radius, central_difference(by_radius, k_growth, step), 1e-7 * at.by_overlap);
+    }
+    // Far off the branch the force rises linearly.
+    const double far = touch - 0.3;
+    EXPECT_NEAR(c.branch.contact(c.law, k_growth, far).by_overlap, central_difference(by_overlap, far, step),
+                1e-7 * at.by_overlap)
+        << c.name;
+  }
+}
+
 TEST(MdrContactBranch, HasTheForceForDerivativeOfItsWork) {
   for_each_state(cases(), [](const Case& c, double overlap) {
     const double force = c.branch.contact(c.law, k_growth, overlap).force;
@@ -275,6 +298,22 @@ TEST(MdrContactBranch, WithAStuckEdgeBearsWhatItBoreWhereItStuck) {
     EXPECT_LT(stuck.contact(c.law, k_growth, less).force, c.branch.contact(c.law, k_growth, less).force) << c.name;
     const double force = stuck.contact(c.law, k_growth, less).force;
     EXPECT_NEAR(stuck.approach_under(c.law, k_growth, force, 0.0), less - k_growth, 1e-12) << c.name;
+  }
+}
+
+TEST(MdrContactBranch, WithAStuckEdgeStoresWhatItStoredWhereItStuck) {
+  for (Case c : cases()) {
+    c.law.surface_energy = 1e-4;
+    for (const double overlap : c.overlaps) {
+      const double radius = c.branch.contact(c.law, k_growth, overlap).contact_radius;
+      const auto stored = [&](const ContactBranch& branch) {
+        return branch.energy(c.law, k_growth, overlap, radius, PlasticPart::recoverable);
+      };
+      const bool turns = c.branch.regime == Regime::fully_plastic;
+      const ContactBranch pressed = turns ? c.branch.unloaded(c.law, k_growth, overlap) : c.branch;
+      EXPECT_LE(relative_error(stored(pressed.with_edge({Edge::sticking, radius})), stored(c.branch)), 1e-9)
+          << c.name << ", overlap = " << overlap;
+    }
   }
 }
 

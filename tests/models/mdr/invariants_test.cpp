@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "elastic/hertz.hpp"
+#include "history/profile.hpp"
 #include "mdr/system.hpp"
 #include "models/accuracy.hpp"
 #include "support/test_run.hpp"
@@ -75,6 +76,33 @@ TEST(MdrInvariance, UnitsDoNotMatter) {
         // Round-off of the scaled input, amplified by the steep unloading branch (factor 8.5) and the lateral overlaps.
         EXPECT_LE(difference(values, unit.outputs(column)), 1e-13)
             << column << ", lengths x " << length << ", stresses x " << stress;
+      }
+    }
+  }
+}
+
+TEST(MdrInvariance, UnitsDoNotMatterToTheSurfaceUnderAContact) {
+  const double length = 1e-6;
+  const double stress = 1e9;
+  CheckedScenario scenario = die_cycle();
+  const Table unit = contact_profiles(scenario, 1.2);
+  scenario.radius *= length;
+  scenario.material["youngs_modulus"] *= stress;
+  scenario.material["yield_stress"] *= stress;
+  for (Step& step : scenario.loading.steps) step.target *= length;
+  const Table scaled = contact_profiles(scenario, 1.2);
+  ASSERT_EQ(scaled.row_count(), unit.row_count());
+  for (const auto& [column, scale] : {std::pair("radius", length), std::pair("pressure", stress),
+                                      std::pair("displacement", length), std::pair("relaxed_height", length)}) {
+    const std::vector<double> expected = unit.column(column);
+    const std::vector<double> values = scaled.column(column);
+    const double largest_value = largest(expected);
+    EXPECT_GT(largest_value, 0.0) << column;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (std::isnan(expected[k])) {
+        EXPECT_TRUE(std::isnan(values[k])) << column << ", row " << k;
+      } else {
+        EXPECT_NEAR(values[k] / scale, expected[k], 1e-11 * largest_value) << column << ", row " << k;
       }
     }
   }

@@ -170,6 +170,19 @@ TEST(MdrGreatestForce, RefusesAForceThatGrowsBeyondIt) {
       << result.record.message;
 }
 
+TEST(MdrWallAtCentre, EndsARunAThousandthOfTheRadiusBefore) {
+  // A particle that never yields, and so does not grow.
+  const auto pressed_to = [](double displacement) {
+    return with(mdr_scenario(Configuration::simple, 2.0, 0.3, {ramp(displacement)}), "radius_rule", "yielded");
+  };
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(pressed_to(0.9995), integrator);
+    EXPECT_EQ(result.record.limit, Limit::wall_at_centre) << integrator << ": " << result.record.message;
+    EXPECT_NEAR(result.last("axial.displacement"), 0.999, 1e-12) << integrator;
+  }
+  EXPECT_EQ(run(pressed_to(0.9985)).record.status, RunStatus::complete);
+}
+
 TEST(MdrVolume, BelowHalfStopsTheRun) {
   for (const double modulus_over_yield : {5.0, 8.0, 10.0}) {
     for (const char* integrator : k_integrators) {
@@ -196,9 +209,13 @@ TEST(MdrVolume, FeedbackOnTheRadiusIsStable) {
 }
 
 TEST(MdrWarnings, NameMaterialsBeyondTheModel) {
-  EXPECT_TRUE(warns(run(mdr_scenario(Configuration::simple, 8.0, 0.3, path({0.1}))), "elastic strains are not small"));
-  EXPECT_FALSE(
-      warns(run(mdr_scenario(Configuration::simple, 12.0, 0.3, path({0.1}))), "elastic strains are not small"));
+  const auto warns_of = [](double modulus_over_yield) {
+    return warns(run(mdr_scenario(Configuration::simple, modulus_over_yield, 0.3, path({0.1}))),
+                 "elastic strains are not small");
+  };
+  EXPECT_TRUE(warns_of(8.0));
+  EXPECT_TRUE(warns_of(9.99));
+  EXPECT_FALSE(warns_of(10.01));
 }
 
 TEST(MdrWarnings, TellThatAMaterialNeverYields) {
