@@ -119,16 +119,12 @@ CapConstants cap_constants(const Parameters& parameters, const Properties& prope
   const double secant = std::sqrt(1.0 + tangent * tangent);
   const Evolving sine{tangent / secant, friction.slope / (secant * secant * secant)};
   const Evolving a{width * secant, width * sine.value * friction.slope};
-  const double room = 1.0 + width - a.value;
-  if (!(room > 0.0)) {
-    throw DomainError(Limit::cap_arc_too_wide, "transition_width is too large for the slope of the shear line");
-  }
-  const double stretch = 1.0 / room;
   const Evolving arc_radius{width * shear.value, width * shear.slope};
   const Evolving arc_centre = product({1.0 - a.value, -a.slope}, shear);
   if (!(arc_centre.value + arc_radius.value / secant > 0.0)) {
     throw DomainError(Limit::cap_arc_too_wide, "transition_width is too large: the arc reaches the axis of pressure");
   }
+  const double stretch = 1.0 / (1.0 + width - a.value);  // positive while the arc stays off the axis of pressure
   const Evolving arc_reach = product(arc_radius, sine);
   return {friction,
           product(tensile, friction),

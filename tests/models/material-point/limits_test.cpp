@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "models/material-point/phases.hpp"
 
@@ -18,6 +19,26 @@ TEST(MaterialPointLimits, AreThoseThatTheMaterialCanMeet) {
   EXPECT_EQ(limits_of(phase).size(), 6U);
   phase.branch.segment = Segment::shear;  // isochoric flow changes no property
   EXPECT_EQ(limits_of(phase).size(), 1U);
+}
+
+TEST(MaterialPointLimits, BelongToTheParametersThatChangeWithTheDensity) {
+  Phase phase;
+  phase.parameters = base_case();
+  phase.branch.segment = Segment::cap;
+  const auto with_parameters = [&](double xi, double xi1, double xi2) {
+    phase.parameters.xi = xi;
+    phase.parameters.xi1 = xi1;
+    phase.parameters.xi2 = xi2;
+    return limits_of(phase);
+  };
+  const auto are = [](const std::vector<Limit>& limits, std::vector<Limit> others) {
+    others.insert(others.end(), {Limit::loss_of_uniqueness, Limit::pores_closed, Limit::cap_centre_at_zero_pressure});
+    return std::ranges::is_permutation(limits, others);
+  };
+  EXPECT_TRUE(are(with_parameters(0.0, 0.0, 0.0), {}));
+  EXPECT_TRUE(are(with_parameters(1.0, 0.0, 0.0), {Limit::too_stiff}));
+  EXPECT_TRUE(are(with_parameters(0.0, 1.0, 0.0), {Limit::poisson_half, Limit::too_stiff}));
+  EXPECT_TRUE(are(with_parameters(0.0, 0.0, 1.0), {Limit::cap_axis_ratio_zero}));
 }
 
 TEST(MaterialPointLimits, AreAheadOfAPointThatBeginsToYield) {

@@ -346,6 +346,16 @@ TEST(MaterialPoint, HydrostaticStressGivesTheDensityInClosedForm) {
   EXPECT_NEAR(result.last("p"), -3.0, 1e-14);
 }
 
+TEST(MaterialPoint, EndsAStepAtARelativeDensity) {
+  const Step to_density = until(stress(-3.0), Quantity::relative_density, 0.75);
+  for (const char* integrator : {"direct", "cvode-bdf"}) {
+    const TestRun result = run(point(base_case(), Configuration::hydrostatic, {to_density}), integrator);
+    EXPECT_TRUE(result.has_event("until-met")) << integrator;
+    EXPECT_NEAR(result.last("relative_density"), 0.75, 1e-9) << integrator;
+    EXPECT_NEAR(result.last("p"), -std::exp(10.0 * 0.05), 1e-7) << integrator;
+  }
+}
+
 // A bar of the double cap bears at most its strength at the critical state, pi3 = Gamma/3.
 TEST(MaterialPoint, LosesUniquenessAtTheCriticalStress) {
   const Parameters m = with_critical_state();
