@@ -96,6 +96,18 @@ TEST(MdrCaps, AreReportedOncePerPair) {
   EXPECT_EQ(count, 1);
 }
 
+TEST(MdrCaps, AreReportedAgainWhenTheyHavePartedAndMeetAgain) {
+  for (const char* integrator : k_integrators) {
+    const TestRun result = run(mdr_scenario(Configuration::die, 20.0, 0.3, path({0.44, 0.3, 0.445})), integrator);
+    EXPECT_EQ(std::ranges::count(result.events(), "axial/lateral:caps-intersect"), 2) << integrator;
+  }
+}
+
+TEST(MdrCaps, OfOneClassAreReportedWithItsNameOnce) {
+  const std::vector<std::string> events = run(hydrostatic_to(0.2026)).events();
+  EXPECT_EQ(std::ranges::count(events, "axial:caps-intersect"), 1);
+}
+
 TEST(MdrSingularGrowth, StopsTheRunWithItsHistory) {
   for (const char* integrator : k_integrators) {
     for (const CheckedScenario& scenario :
