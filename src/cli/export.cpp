@@ -1,6 +1,5 @@
 // `monograin export`.
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,8 +15,6 @@
 
 namespace monograin {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct ExportOptions {
   std::string file;
