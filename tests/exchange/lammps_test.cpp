@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <regex>
 #include <set>
@@ -16,7 +14,6 @@
 #include "history/table.hpp"
 #include "support/refusal.hpp"
 #include "support/scenario_texts.hpp"
-#include "support/temporary_folder.hpp"
 #include "support/test_run.hpp"
 #include "support/text_file.hpp"
 
@@ -182,30 +179,53 @@ TEST(LammpsLaw, RefusesModelsAndOptionsWithoutACounterpart) {
   EXPECT_EQ(reason(auxetic), "LAMMPS takes no negative Poisson's ratio for mdr");
 }
 
-/// LAMMPS itself, where it is installed with its package GRANULAR.
+/// Lines of an input file that do not move walls, without comments.
+std::vector<std::string> fixed_lines_of(const std::string& input) {
+  std::vector<std::string> fixed;
+  std::istringstream lines(input);
+  for (std::string line; std::getline(lines, line);) {
+    const bool moves = line.starts_with("variable d_") || line.starts_with("variable centre_");
+    if (!line.starts_with('#') && !moves) fixed.push_back(line);
+  }
+  return fixed;
+}
+
+/// The folder holds an input file, and what LAMMPS has computed with it.
+const std::string k_lammps = MONOGRAIN_SOURCE_DIR "/tests/exchange/lammps/";
+
+TEST(LammpsInput, IsTheOneThatLammpsHasRun) {
+  const std::string input = input_of(read_scenario(k_lammps + "free-centre.toml"));
+  const std::string run = read_text(k_lammps + "free-centre.in");
+  EXPECT_EQ(fixed_lines_of(input), fixed_lines_of(run));
+  const std::vector<Piece> pieces = pieces_of(input);
+  const std::vector<Piece> run_pieces = pieces_of(run);
+  ASSERT_EQ(pieces.size(), run_pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    EXPECT_EQ(pieces[i].steps, run_pieces[i].steps);
+    for (const auto& [name, from] : run_pieces[i].from) {
+      EXPECT_NEAR(pieces[i].from.at(name), from, 1e-14) << name;
+      EXPECT_NEAR(pieces[i].change.at(name), run_pieces[i].change.at(name), 1e-14) << name;
+    }
+  }
+}
+
 TEST(LammpsInput, GivesTheForcesOfHertzInLammps) {
-  if (std::system("command -v lmp > /dev/null 2>&1") != 0) GTEST_SKIP() << "lmp is not installed";
-  const TemporaryFolder folder;
-  CheckedScenario scenario = between(
-      hertz_scenario(Configuration::simple, {}),
-      {wall("floor", Eigen::Vector3d(0, -1, -2)), wall("punch", Eigen::Vector3d(0, 1, 2), path({0.02, 0.005, 0.03}))});
-  scenario.loading.centre_is_free = true;
-  write_text(folder.path() / "in", input_of(scenario));
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 lmp -in in > out 2>&1";
-  ASSERT_EQ(std::system(command.c_str()), 0) << read_text(folder.path() / "out");
-  const Table forces = read_csv(folder.path() / (scenario.name + ".lammps.csv"));
+  const CheckedScenario scenario = read_scenario(k_lammps + "free-centre.toml");
+  const Table forces = read_csv(k_lammps + "free-centre.csv");
   const std::vector<double> displacement = forces.column("punch.displacement[m]");
   const std::vector<double> punch = forces.column("punch.force[N]");
   const std::vector<double> floor = forces.column("floor.force[N]");
-  ASSERT_GT(displacement.size(), 50U);
-  const double stiffness = 4.0 / 3.0 / (1.0 - std::pow(scenario.material.at("poisson_ratio"), 2));
+  const double stiffness = 4.0 / 3.0 * 1e9 / (1.0 - 0.3 * 0.3) * std::sqrt(scenario.radius);
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     // Half of the displacement is the centre's.
-    EXPECT_NEAR(punch[i], stiffness * std::pow(0.5 * displacement[i], 1.5), 1e-9);
-    EXPECT_NEAR(floor[i], punch[i], 1e-9);
+    const double force = stiffness * std::pow(0.5 * displacement[i], 1.5);
+    EXPECT_NEAR(punch[i], force, 1e-9 * force);
+    EXPECT_NEAR(floor[i], force, 1e-9 * force);
   }
-  EXPECT_NEAR(displacement.back(), 0.03, 1e-14);
+  // The run ends where LAMMPS does.
+  const Motion motion = motion_of_run(scenario);
+  EXPECT_DOUBLE_EQ(displacement.back(), motion.instants.back().contacts[0].displacement);
+  EXPECT_NEAR(punch.back(), motion.instants.back().contacts[0].force, 1e-9 * punch.back());
 }
 
 }  // namespace
