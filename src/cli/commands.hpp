@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,18 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Value of a call whose invalid arguments come from the command line.
+/// @param subject  file or run that a fault is of
+/// @throws UsageError if the call throws std::invalid_argument
+template <class Call>
+[[nodiscard]] auto or_usage_error(const std::string& subject, Call&& call) {
+  try {
+    return call();
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(subject + ": " + error.what());
+  }
+}
 
 /// The model of a name given on the command line.
 /// @throws UsageError if there is no such model; the message lists the models

@@ -23,52 +23,39 @@ struct ExportOptions {
   std::optional<std::string> wall;
 };
 
-/// Runs a scenario, and gives the motion of its walls.
-Motion motion_of_run(const CheckedScenario& scenario, RunStatus& status) {
+/// Runs a scenario, and prints its text or writes it to the file of -o.
+/// @param make  (motion of the scenario's run) -> text
+template <class Make>
+int export_run(const ExportOptions& options, const CheckedScenario& scenario, Make&& make) {
   const Run run = run_scenario(scenario);
   for (const std::string& warning : run.record.warnings) say("warning: {}\n", warning);
   if (!run.record.message.empty()) {
     say("{}: {}: {}\n", scenario.name, to_string(run.record.status), run.record.message);
   }
-  status = run.record.status;
-  return motion_of(scenario, run.record.history);
-}
-
-/// Prints a text, or writes it to the file of -o.
-void put(const std::string& text, const std::string& output) {
-  if (output.empty()) {
+  const std::string text = or_usage_error(options.file, [&] { return make(motion_of(scenario, run.record.history)); });
+  if (options.output.empty()) {
     print_data("{}", text);
-    return;
+  } else {
+    write_text_file(options.output, text);
+    say("-> {}\n", options.output);
   }
-  write_text_file(output, text);
-  say("-> {}\n", output);
+  return exit_code_of(run.record.status);
 }
 
-/// Makes the text of a scenario; its faults are faults of the command line.
-template <class Make>
-int export_scenario(const ExportOptions& options, Make&& make) {
+CheckedScenario scenario_of(const ExportOptions& options) {
   if (!options.output.empty()) expect_own_file(options.output, options.output);
-  const CheckedScenario scenario = read_scenario(options.file, options.overrides, FileKind::any);
-  RunStatus status = RunStatus::complete;
-  try {
-    put(make(scenario, status), options.output);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(options.file + ": " + error.what());
-  }
-  return exit_code_of(status);
+  return read_scenario(options.file, options.overrides, FileKind::any);
 }
 
 int export_lammps(const ExportOptions& options) {
-  return export_scenario(options, [](const CheckedScenario& scenario, RunStatus& status) {
-    const LammpsLaw law = lammps_law_of(scenario);
-    return lammps_input(scenario, motion_of_run(scenario, status), law);
-  });
+  const CheckedScenario scenario = scenario_of(options);
+  const LammpsLaw law = or_usage_error(options.file, [&] { return lammps_law_of(scenario); });
+  return export_run(options, scenario, [&](const Motion& motion) { return lammps_input(scenario, motion, law); });
 }
 
 int export_table(const ExportOptions& options) {
-  return export_scenario(options, [&](const CheckedScenario& scenario, RunStatus& status) {
-    return csv_text(force_table(motion_of_run(scenario, status), options.wall));
-  });
+  return export_run(options, scenario_of(options),
+                    [&](const Motion& motion) { return csv_text(force_table(motion, options.wall)); });
 }
 
 CLI::App* add_export(CLI::App& parent, const std::string& name, const std::string& description,

@@ -74,11 +74,9 @@ int plot_vtk(const PlotOptions& options) {
     const fs::path folder = folder_of(run);
     const fs::path output = options.output.empty() ? folder / "vtk" : fs::path(options.output);
     StagedFolder staged(output, k_vtk_series);
-    try {
-      write_vtk(motion_of(scenario_of_run(folder), figure::read_table(folder / k_run_tables.front())), staged.path());
-    } catch (const std::invalid_argument& error) {
-      throw UsageError(fmt::format("{}: {}", run.string(), error.what()));
-    }
+    const CheckedScenario scenario = scenario_of_run(folder);
+    const Table history = figure::read_table(folder / k_run_tables.front());
+    write_vtk(or_usage_error(run.string(), [&] { return motion_of(scenario, history); }), staged.path());
     staged.publish(staged.age());
     say("particle -> {}\n", (output / k_vtk_series).string());
   }

@@ -50,13 +50,11 @@ bool are_marks(const GuardSet& guard_set, std::span<const std::size_t> guards) {
   });
 }
 
-// A guard fires together with those that the integrator has found if it is within its tolerance of zero at xi, and all
-// of these hold:
-//   - It is not short of zero by more than it has moved since the middle of the integrator's last step: at its mean
-//   rate
-//     it reaches zero within as long again, and a branch may be shorter than the tolerance.
-//   - It was not zero at that middle, and moves in a direction in which it counts.
-//   - If it is a condition of the program and short of zero, it does not go away from zero before xi.
+// A guard fires together with those that the integrator has found if it is within its tolerance of zero at xi, and if
+// the following holds. It is not short of zero by more than it has moved since the middle of the integrator's last
+// step: at its mean rate it reaches zero within as long again, and a branch may be shorter than the tolerance. It was
+// not zero at that middle, and moves in a direction in which it counts. If it is a condition of the program and short
+// of zero, it does not go away from zero before xi.
 std::vector<std::size_t> fired_guards(GuardSet& guard_set, Integrator& integrator, double last, double xi,
                                       std::span<const double> y) {
   std::vector<std::size_t> fired(integrator.fired().begin(), integrator.fired().end());

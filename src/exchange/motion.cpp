@@ -12,32 +12,22 @@
 namespace monograin {
 namespace {
 
-/// Column of a history that a law may lack.
-class OptionalColumn {
- public:
-  OptionalColumn(const Table& table, const std::string& name, double otherwise)
-      : table_(table), index_(table.find(name)), otherwise_(otherwise) {}
-
-  [[nodiscard]] double at(std::size_t row) const { return index_ ? table_.at(row, *index_) : otherwise_; }
-
- private:
-  const Table& table_;
-  std::optional<std::size_t> index_;
-  double otherwise_;
+/// Columns of a contact class; those that a law may lack are empty.
+struct ContactColumns {
+  std::size_t displacement;
+  std::size_t force;
+  std::optional<std::size_t> radius;
+  std::optional<std::size_t> pressure;
 };
 
-/// Column that every history has.
-std::vector<double> column_of(const Table& history, const std::string& name) {
-  if (!history.find(name)) throw std::invalid_argument("the history has no column " + name);
-  return history.column(name);
+std::size_t column_of(const Table& history, const std::string& name) {
+  if (const auto column = history.find(name)) return *column;
+  throw std::invalid_argument("the history has no column " + name);
 }
 
-struct ContactColumns {
-  std::vector<double> displacement;
-  std::vector<double> force;
-  OptionalColumn radius;
-  OptionalColumn pressure;
-};
+double value_of(const Table& history, std::size_t row, std::optional<std::size_t> column, double otherwise) {
+  return column ? history.at(row, *column) : otherwise;
+}
 
 }  // namespace
 
@@ -55,21 +45,23 @@ Motion motion_of(const CheckedScenario& scenario, const Table& history) {
       motion.walls.push_back({scene.walls[i][k], contact.normals[k], i});
     }
     contacts.push_back({column_of(history, contact.name + ".displacement"), column_of(history, contact.name + ".force"),
-                        OptionalColumn(history, contact.name + ".contact_radius", k_nan),
-                        OptionalColumn(history, contact.name + ".pressure", k_nan)});
+                        history.find(contact.name + ".contact_radius"), history.find(contact.name + ".pressure")});
   }
-  const std::vector<double> time = column_of(history, "time");
-  const OptionalColumn radius(history, "apparent_radius", scenario.radius);
-  const std::array centre{OptionalColumn(history, "centre_x", 0.0), OptionalColumn(history, "centre_y", 0.0),
-                          OptionalColumn(history, "centre_z", 0.0)};
-  for (std::size_t row = 0; row < time.size(); ++row) {
-    if (row + 1 < time.size() && time[row + 1] == time[row]) continue;
-    MotionInstant instant{.time = time[row],
-                          .radius = radius.at(row),
-                          .centre = {centre[0].at(row), centre[1].at(row), centre[2].at(row)}};
+  const std::size_t time = column_of(history, "time");
+  const auto radius = history.find("apparent_radius");
+  const std::array centre{history.find("centre_x"), history.find("centre_y"), history.find("centre_z")};
+  const std::size_t count = history.row_count();
+  for (std::size_t row = 0; row < count; ++row) {
+    const double now = history.at(row, time);
+    if (row + 1 < count && history.at(row + 1, time) == now) continue;
+    MotionInstant instant{.time = now, .radius = value_of(history, row, radius, scenario.radius)};
+    for (std::size_t k = 0; k < centre.size(); ++k) {
+      instant.centre[static_cast<Eigen::Index>(k)] = value_of(history, row, centre[k], 0.0);
+    }
     for (const ContactColumns& columns : contacts) {
-      instant.contacts.push_back(
-          {columns.displacement[row], columns.force[row], columns.radius.at(row), columns.pressure.at(row)});
+      instant.contacts.push_back({history.at(row, columns.displacement), history.at(row, columns.force),
+                                  value_of(history, row, columns.radius, k_nan),
+                                  value_of(history, row, columns.pressure, k_nan)});
     }
     motion.instants.push_back(std::move(instant));
   }

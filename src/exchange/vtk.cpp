@@ -101,14 +101,23 @@ class PolyData {
   std::string appended_;
 };
 
-/// Planes that cut the particle, as the motion goes on.
-class Cuts {
+/// True if a contact has a pressure at some time.
+bool has_pressures(const Motion& motion) {
+  return std::ranges::any_of(motion.instants, [](const MotionInstant& instant) {
+    return std::ranges::any_of(instant.contacts, [](const ContactInstant& c) { return !std::isnan(c.pressure); });
+  });
+}
+
+/// The particle as the motion goes on: its files share the triangles of one sphere.
+class Particle {
  public:
-  explicit Cuts(const Motion& motion) : motion_(motion) {
+  explicit Particle(const Motion& motion) : motion_(motion), has_pressure_(has_pressures(motion)) {
     for (const MovingWall& wall : motion.walls) planes_.push_back({wall.normal, k_infinity});
+    for (const auto& triangle : sphere_.triangles) corners_.insert(corners_.end(), triangle.begin(), triangle.end());
   }
 
-  /// A wall that bears a force cuts where it is; another one leaves the cut where it last pressed, or pushes it in.
+  /// Goes on to the next instant. A wall that bears a force cuts where it is; another one leaves the cut where it last
+  /// pressed, or pushes it in.
   void follow(const MotionInstant& instant) {
     for (std::size_t i = 0; i < planes_.size(); ++i) {
       const MovingWall& wall = motion_.walls[i];
@@ -117,50 +126,43 @@ class Cuts {
       planes_[i].distance = presses ? distance : std::min(planes_[i].distance, distance);
     }
   }
-  [[nodiscard]] std::span<const CuttingPlane> planes() const noexcept { return planes_; }
+
+  /// File of the instant that was followed last.
+  [[nodiscard]] std::string text(const MotionInstant& instant) const {
+    std::vector<Eigen::Vector3d> positions;
+    std::vector<Eigen::Vector3d> displacements;
+    std::vector<double> pressures;
+    std::vector<double> walls;
+    for (const CutPoint& point : cut_sphere(sphere_, instant.radius, planes_)) {
+      const Eigen::Vector3d& corner = sphere_.points[positions.size()];
+      positions.emplace_back(instant.centre + point.position);
+      displacements.emplace_back(positions.back() - motion_.initial_radius * corner);
+      pressures.push_back(pressure_at(point, instant));
+      walls.push_back(point.plane + 1);
+    }
+    PolyData data(positions);
+    data.add_polygons(corners_, 3);
+    data.add_point_vectors("displacement", displacements);
+    if (has_pressure_) data.add_point_values("pressure", pressures);
+    data.add_point_values("wall", walls);
+    return data.text();
+  }
 
  private:
+  [[nodiscard]] double pressure_at(const CutPoint& point, const MotionInstant& instant) const {
+    if (point.plane < 0) return 0.0;
+    const MovingWall& wall = motion_.walls[static_cast<std::size_t>(point.plane)];
+    const ContactInstant& contact = instant.contacts[wall.contact_class];
+    const double from_axis = (point.position - point.position.dot(wall.normal) * wall.normal).norm();
+    return contact.force == 0.0 || from_axis > contact.radius ? 0.0 : contact.pressure;
+  }
+
   const Motion& motion_;
+  bool has_pressure_;
+  SurfaceMesh sphere_ = unit_sphere(k_sphere_levels);
+  std::vector<int> corners_{};  ///< of all triangles
   std::vector<CuttingPlane> planes_{};
 };
-
-/// True if a contact has a pressure at some time.
-bool has_pressures(const Motion& motion) {
-  return std::ranges::any_of(motion.instants, [](const MotionInstant& instant) {
-    return std::ranges::any_of(instant.contacts, [](const ContactInstant& c) { return !std::isnan(c.pressure); });
-  });
-}
-
-std::string particle_text(const Motion& motion, const MotionInstant& instant, std::span<const CuttingPlane> planes,
-                          const SurfaceMesh& sphere, bool has_pressure) {
-  const std::vector<CutPoint> cut = cut_sphere(sphere, instant.radius, planes);
-  std::vector<Eigen::Vector3d> positions;
-  std::vector<Eigen::Vector3d> displacements;
-  std::vector<double> pressures;
-  std::vector<double> walls;
-  for (std::size_t i = 0; i < cut.size(); ++i) {
-    const Eigen::Vector3d& from_centre = cut[i].position;
-    positions.emplace_back(instant.centre + from_centre);
-    displacements.emplace_back(positions.back() - motion.initial_radius * sphere.points[i]);
-    walls.push_back(cut[i].plane + 1);
-    double pressure = 0.0;
-    if (cut[i].plane >= 0) {
-      const MovingWall& wall = motion.walls[static_cast<std::size_t>(cut[i].plane)];
-      const ContactInstant& contact = instant.contacts[wall.contact_class];
-      const double from_axis = (from_centre - from_centre.dot(wall.normal) * wall.normal).norm();
-      if (contact.force != 0.0 && !(from_axis > contact.radius)) pressure = contact.pressure;
-    }
-    pressures.push_back(pressure);
-  }
-  std::vector<int> corners;
-  for (const auto& triangle : sphere.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
-  PolyData data(positions);
-  data.add_polygons(corners, 3);
-  data.add_point_vectors("displacement", displacements);
-  if (has_pressure) data.add_point_values("pressure", pressures);
-  data.add_point_values("wall", walls);
-  return data.text();
-}
 
 std::string walls_text(const Motion& motion, const MotionInstant& instant) {
   std::vector<Eigen::Vector3d> points;
@@ -189,19 +191,17 @@ std::string walls_text(const Motion& motion, const MotionInstant& instant) {
 }  // namespace
 
 void write_vtk(const Motion& motion, const fs::path& folder) {
-  const SurfaceMesh sphere = unit_sphere(k_sphere_levels);
-  const bool has_pressure = has_pressures(motion);
   const std::size_t count = motion.instants.size();
   const std::size_t written = std::min(count, k_most_instants);
-  Cuts cuts(motion);
+  Particle particle(motion);
   std::string list;
   std::size_t number = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const MotionInstant& instant = motion.instants[i];
-    cuts.follow(instant);
+    particle.follow(instant);
     // The first and the last are among them.
     if (written > 1 && i != number * (count - 1) / (written - 1)) continue;
-    const std::array parts{std::pair{"particle", particle_text(motion, instant, cuts.planes(), sphere, has_pressure)},
+    const std::array parts{std::pair{"particle", particle.text(instant)},
                            std::pair{"walls", walls_text(motion, instant)}};
     for (std::size_t part = 0; part < parts.size(); ++part) {
       const std::string name = fmt::format("{}-{:04}.vtp", parts[part].first, number);
