@@ -8,6 +8,7 @@
 #include "elastic/hertz.hpp"
 #include "stress_test/checks.hpp"
 #include "stress_test/draw.hpp"
+#include "system/continuum_material.hpp"
 #include "system/model.hpp"
 #include "system/resolution.hpp"
 
@@ -126,7 +127,8 @@ Model model() noexcept {
           .parameters = parameters,
           .reach = reach,
           .draw = draw,
-          .check = check};
+          .check = check,
+          .continuum_material = continuum_material};
 }
 
 }  // namespace monograin::cel

@@ -7,6 +7,7 @@
 #include "hertz/law.hpp"
 #include "stress_test/checks.hpp"
 #include "stress_test/draw.hpp"
+#include "system/continuum_material.hpp"
 #include "system/lammps_law.hpp"
 #include "system/model.hpp"
 #include "system/number_text.hpp"
@@ -115,7 +116,8 @@ Model model() noexcept {
                                      .is_elastic = [](const ModelInput&) { return true; },
                                      .draw = draw,
                                      .check = check,
-                                     .lammps_law = lammps_law});
+                                     .lammps_law = lammps_law,
+                                     .continuum_material = continuum_material});
 }
 
 }  // namespace monograin::hertz

@@ -11,6 +11,7 @@
 #include "mdr/system.hpp"
 #include "stress_test/checks.hpp"
 #include "stress_test/draw.hpp"
+#include "system/continuum_material.hpp"
 #include "system/lammps_law.hpp"
 #include "system/model.hpp"
 #include "system/number_text.hpp"
@@ -140,6 +141,12 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
   settings.centre_is_free = input.centre_is_free;
   settings.reach = reach;
   return std::make_unique<System>(settings, std::move(classes));
+}
+
+ContinuumMaterial continuum_material(const ModelInput& input) {
+  ContinuumMaterial material = monograin::continuum_material(input);
+  if (input.material("surface_energy") > 0.0) material.differences = {"finite elements leave out the adhesion"};
+  return material;
 }
 
 /// The law of LAMMPS without its bulk response and damping.
@@ -288,7 +295,8 @@ Model model() noexcept {
           .draw = draw,
           .check = check,
           .adhesion_map = &k_adhesion_map,
-          .lammps_law = lammps_law};
+          .lammps_law = lammps_law,
+          .continuum_material = continuum_material};
 }
 
 }  // namespace monograin::mdr

@@ -10,6 +10,7 @@
 #include "nonlocal/system.hpp"
 #include "stress_test/checks.hpp"
 #include "stress_test/draw.hpp"
+#include "system/continuum_material.hpp"
 #include "system/model.hpp"
 #include "system/resolution.hpp"
 
@@ -204,7 +205,8 @@ Model model() noexcept {
           .reach = reach,
           .is_elastic = [](const ModelInput&) { return true; },
           .draw = draw,
-          .may_be_undefined = may_be_undefined};
+          .may_be_undefined = may_be_undefined,
+          .continuum_material = continuum_material};
 }
 
 }  // namespace monograin::nonlocal

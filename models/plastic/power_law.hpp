@@ -41,6 +41,10 @@ inline constexpr std::array k_power_law_material{
 /// Objections to a scenario that unloads without elastic constants.
 [[nodiscard]] std::vector<Objection> power_law_objections(const ModelInput& input);
 
+/// Elastic material that flows by the power law of its total strain where that is below the elastic line.
+/// @throws std::invalid_argument without elastic constants
+[[nodiscard]] ContinuumMaterial power_law_continuum(const ModelInput& input);
+
 /// Power law nearest to Ludwik's law. The fit over the total strain depends on Young's modulus; infinite:
 /// rigid-plastic.
 /// @throws std::invalid_argument, std::domain_error as fit_hollomon
@@ -59,6 +63,7 @@ template <auto law_of, const auto& options>
   model.material = k_power_law_material;
   model.objections = power_law_objections;
   model.power_law_of = power_law_of;
+  model.continuum_material = power_law_continuum;
   return model_of<[](const ModelInput& input, const Reach& reach) {
     return WallLaw(law_of(input), settings_of(input, "strength", reach));
   }>(std::move(model));

@@ -5,6 +5,7 @@
 #include "plastic/model_of.hpp"
 #include "semimech/wall_law.hpp"
 #include "stress_test/draw.hpp"
+#include "system/continuum_material.hpp"
 
 namespace monograin::semimech {
 namespace {
@@ -144,7 +145,8 @@ Model model() noexcept {
        .domain = k_domain,
        .objections = objections,
        .parameters = parameters,
-       .draw = draw});
+       .draw = draw,
+       .continuum_material = continuum_material});
 }
 
 }  // namespace monograin::semimech

@@ -242,11 +242,12 @@ struct PowerLaw {
   double exponent = 0.0;
 };
 
-// stress_test/draw.hpp, stress_test/checks.hpp, system/curve_procedure.hpp, system/adhesion_map.hpp and
-// system/lammps_law.hpp define these.
+// stress_test/draw.hpp, stress_test/checks.hpp, system/curve_procedure.hpp, system/adhesion_map.hpp,
+// system/continuum_material.hpp and system/lammps_law.hpp define these.
 class Dice;
 struct AdhesionMap;
 struct CheckedRun;
+struct ContinuumMaterial;
 struct CurveProcedure;
 struct DrawnMaterial;
 struct DrawnStep;
@@ -331,6 +332,9 @@ struct Model {
   /// Law of LAMMPS with these equations. Null: LAMMPS has none.
   /// @throws std::invalid_argument that says why LAMMPS has none for the options or the material of the scenario
   LammpsLaw (*lammps_law)(const ModelInput& input) = nullptr;
+  /// Material for finite elements of the particle. Null: its particle is no isotropic elastic-plastic body.
+  /// @throws std::invalid_argument that says what the scenario lacks
+  ContinuumMaterial (*continuum_material)(const ModelInput& input) = nullptr;
 
   /// True if the model has a particle and walls; false for a material point or a packing.
   [[nodiscard]] bool has_walls() const noexcept { return drives.empty(); }
