@@ -1,7 +1,5 @@
 #include "figure/gnuplot.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,10 +12,10 @@
 #include <system_error>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
 #include "figure/figure.hpp"
+#include "history/external_program.hpp"
 
 namespace monograin::figure {
 namespace {
@@ -55,33 +53,6 @@ class Workplace {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Runs a program in a folder, without input and with all output in a log file.
-/// @return its exit code; -1 if it did not end by itself
-[[nodiscard]] int run_program(const fs::path& program, std::vector<std::string> words, const fs::path& folder,
-                              const fs::path& log) {
-  words.insert(words.begin(), program.string());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = 0;
-  const int failure = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) {
-    throw FigureError(fmt::format("{} cannot be started: {}", program.string(), std::strerror(failure)));
-  }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return -1;
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
 [[nodiscard]] bool is_control(char c) noexcept { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }
 
 /// A gnuplot string in double quotes, which can hold any byte. Special characters are given by their numbers: gnuplot
@@ -99,16 +70,7 @@ class Workplace {
 }  // namespace
 
 fs::path find_gnuplot() {
-  const char* const variable = std::getenv("PATH");
-  std::string_view folders = variable ? variable : "/usr/local/bin:/usr/bin:/bin";
-  for (;;) {
-    const std::size_t colon = folders.find(':');
-    const fs::path candidate = fs::path(folders.substr(0, colon)) / "gnuplot";
-    std::error_code ignored;
-    if (fs::is_regular_file(candidate, ignored) && access(candidate.c_str(), X_OK) == 0) return fs::absolute(candidate);
-    if (colon == std::string_view::npos) break;
-    folders.remove_prefix(colon + 1);
-  }
+  if (const auto gnuplot = find_program("gnuplot")) return *gnuplot;
   throw FigureError(
       "gnuplot was not found on the PATH; figures need it (on Debian: apt-get install gnuplot-nox). The recorded run "
       "is complete without it");
