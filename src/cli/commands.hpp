@@ -11,6 +11,7 @@
 
 namespace monograin {
 
+struct CheckedScenario;
 struct Model;
 
 /// Exit codes that scripts rely on.
@@ -22,6 +23,10 @@ enum ExitCode : int {
   k_solver_failure = 4,  ///< a solver gave up; the history up to there is kept
   k_differs = 5          ///< a comparison was above its tolerance, or a fit is bad
 };
+
+/// Name of a run's folder below `runs` or below -o. A digest of the overrides lets runs of one scenario with different
+/// overrides have folders of their own.
+[[nodiscard]] std::string folder_name(const CheckedScenario& scenario);
 
 /// Exit code of the process after a run that has ended with a status.
 [[nodiscard]] int exit_code_of(RunStatus status);
@@ -43,6 +48,9 @@ template <class Call>
     throw UsageError(subject + ": " + error.what());
   }
 }
+
+/// Adds the option --set, which overrides keys of a scenario.
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides);
 
 /// The model of a name given on the command line.
 /// @throws UsageError if there is no such model; the message lists the models
@@ -74,6 +82,7 @@ void add_calibrate_command(CLI::App& app, Action& action);
 void add_design_command(CLI::App& app, Action& action);
 void add_data_command(CLI::App& app, Action& action);
 void add_export_command(CLI::App& app, Action& action);
+void add_continuum_command(CLI::App& app, Action& action);
 void add_sweep_command(CLI::App& app, Action& action);
 void add_sensitivity_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);

@@ -62,10 +62,7 @@ CLI::App* add_export(CLI::App& parent, const std::string& name, const std::strin
                      const std::shared_ptr<ExportOptions>& options) {
   CLI::App* command = parent.add_subcommand(name, description);
   command->add_option("FILE", options->file, "Scenario file (TOML)")->required();
-  command->add_option("--set", options->overrides, "Override a key: key=value, e.g. material.yield_stress='30 MPa'")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
+  add_overrides(*command, options->overrides);
   command->add_option("-o,--output", options->output, "File to write [standard output]");
   return command;
 }

@@ -204,6 +204,7 @@ int run_program(int argc, char** argv) {
   add_calibrate_command(app, action);
   add_design_command(app, action);
   add_export_command(app, action);
+  add_continuum_command(app, action);
   add_data_command(app, action);
   add_sweep_command(app, action);
   add_sensitivity_command(app, action);

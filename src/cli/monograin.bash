@@ -3,7 +3,7 @@
 _monograin() {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} options
   if ((COMP_CWORD == 1)); then
-    mapfile -t COMPREPLY < <(compgen -W "run check models cite units plot atlas compare regress calibrate design data export sweep sensitivity bench stress schema --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "run check models cite units plot atlas compare regress calibrate design data export continuum sweep sensitivity bench stress schema --help --version" -- "$current")
     return
   fi
   if [[ $previous == models ]]; then
@@ -22,6 +22,10 @@ _monograin() {
     mapfile -t COMPREPLY < <(compgen -W "lammps table --help" -- "$current")
     return
   fi
+  if [[ $previous == --mesh ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "coarse medium fine" -- "$current")
+    return
+  fi
   case ${COMP_WORDS[1]} in
     run) options="--output --set --plot --quiet --help" ;;
     check) options="--set --help" ;;
@@ -36,6 +40,7 @@ _monograin() {
       options="--set --output --help"
       [[ ${COMP_WORDS[2]} == table ]] && options+=" --wall"
       ;;
+    continuum) options="--mesh --error --keep --set --output --help" ;;
     sweep) options="--jobs --shard --design-only --output --quiet --help" ;;
     sensitivity) options="--jobs --confidence --output --help" ;;
     bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --help" ;;

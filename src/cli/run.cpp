@@ -56,18 +56,6 @@ std::vector<Job> read_jobs(const RunOptions& options) {
   return jobs;
 }
 
-/// Name of a run's folder below `runs` or below -o. A digest of the overrides lets runs of one scenario with different
-/// overrides have folders of their own.
-std::string folder_name(const CheckedScenario& scenario) {
-  if (scenario.overrides.empty()) return scenario.name;
-  std::vector<std::string> overrides = scenario.overrides;
-  // The order of overrides matters only among those of one key.
-  std::ranges::stable_sort(overrides, {}, [](const std::string& text) { return text.substr(0, text.find('=')); });
-  const std::string digest = text_digest(fmt::format("{}", fmt::join(overrides, "\n")));
-  constexpr std::size_t k_digits = 8;
-  return fmt::format("{}-{}", scenario.name, digest.substr(digest.find(':') + 1, k_digits));
-}
-
 /// Chooses and makes the folders of all jobs before any job runs, so that no result turns out to have no folder.
 void choose_folders(std::vector<Job>& jobs, const std::string& output) {
   std::set<fs::path> taken;
@@ -125,6 +113,23 @@ int run(const RunOptions& options) {
 
 }  // namespace
 
+std::string folder_name(const CheckedScenario& scenario) {
+  if (scenario.overrides.empty()) return scenario.name;
+  std::vector<std::string> overrides = scenario.overrides;
+  // The order of overrides matters only among those of one key.
+  std::ranges::stable_sort(overrides, {}, [](const std::string& text) { return text.substr(0, text.find('=')); });
+  const std::string digest = text_digest(fmt::format("{}", fmt::join(overrides, "\n")));
+  constexpr std::size_t k_digits = 8;
+  return fmt::format("{}-{}", scenario.name, digest.substr(digest.find(':') + 1, k_digits));
+}
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
+  command.add_option("--set", overrides, "Override a key: key=value, e.g. material.yield_stress='30 MPa'")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+}
+
 int exit_code_of(RunStatus status) {
   switch (status) {
     case RunStatus::complete:
@@ -157,10 +162,7 @@ void add_run_command(CLI::App& app, Action& action) {
   command->add_option(
       "-o,--output", options->output,
       "Folder of the run (of several files: the folder that holds theirs) [runs/NAME, with --set runs/NAME-DIGEST]");
-  command->add_option("--set", options->overrides, "Override a key: key=value, e.g. material.yield_stress='30 MPa'")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
+  add_overrides(*command, options->overrides);
   command->add_flag("--plot", options->draws_figure, "Draw figure.svg beside the curves");
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
   command->footer("Example: monograin run scenarios/die.toml --set loading.steps[0].displacement='0.3 R0' --plot");

@@ -562,8 +562,9 @@ TEST_F(Commands, RunLeavesTheReferencesOfTheModel) {
 }
 
 TEST_F(Commands, HelpEndsWithAnExample) {
-  for (const char* command : {"", "run", "check", "models", "cite", "units", "plot", "atlas", "compare", "regress",
-                              "calibrate", "design", "data", "sweep", "schema", "export lammps", "export table"}) {
+  for (const char* command :
+       {"", "run", "check", "models", "cite", "units", "plot", "atlas", "compare", "regress", "calibrate", "design",
+        "data", "sweep", "schema", "export lammps", "export table", "continuum"}) {
     const Outcome help = monograin(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Example: monograin "), std::string::npos) << command;

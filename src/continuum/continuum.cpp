@@ -1,0 +1,367 @@
+#include "continuum/continuum.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <stdexcept>
+
+#include "catalogue.hpp"
+#include "continuum/calculix.hpp"
+#include "continuum/contact_area.hpp"
+#include "continuum/sector.hpp"
+#include "continuum/sector_mesh.hpp"
+#include "history/run_files.hpp"
+#include "scenario/model_input.hpp"
+#include "system/resolution.hpp"
+
+namespace monograin {
+namespace {
+
+/// Motion of a wall and change of a force between two instants that are computed.
+constexpr double k_largest_motion = 0.01;        ///< over R0
+constexpr double k_largest_force_change = 0.04;  ///< over the largest force of the class
+/// Poisson's ratio from which on bricks of eight nodes lock.
+constexpr double k_largest_poisson_ratio = 0.49;
+/// Bulk modulus over yield stress from which on bricks of eight nodes become too stiff under plastic flow.
+constexpr double k_locking_ratio = 170.0;
+
+/// Meshes between two walls and under more, from one coarser than the coarsest that a user may ask for.
+constexpr std::array k_wedge_meshes{SectorMeshSize{24, 1, 2.5}, SectorMeshSize{40, 1, 2.5}, SectorMeshSize{80, 1, 2.5},
+                                    SectorMeshSize{160, 1, 2.5}};
+constexpr std::array k_sector_meshes{SectorMeshSize{16, 4, 1.0}, SectorMeshSize{24, 5, 1.0}, SectorMeshSize{32, 7, 1.0},
+                                     SectorMeshSize{48, 10, 1.0}};
+
+/// State of a contact class by finite elements [SI].
+struct ClassState {
+  double force = 0.0;
+  double area = 0.0;
+
+  [[nodiscard]] double radius() const { return std::sqrt(area / std::numbers::pi); }
+  [[nodiscard]] double pressure() const { return force == 0.0 ? 0.0 : force / area; }
+};
+
+/// State of the particle at an instant [SI].
+struct ParticleState {
+  double volume = 0.0;
+  std::vector<ClassState> classes{};
+};
+
+/// Indices of the instants that finite elements compute.
+std::vector<std::size_t> chosen_instants(const Motion& motion) {
+  const std::size_t class_count = motion.classes.size();
+  std::vector<double> largest(class_count, 0.0);
+  for (const MotionInstant& instant : motion.instants) {
+    for (std::size_t c = 0; c < class_count; ++c) {
+      const double force = std::abs(instant.contacts[c].force);
+      if (std::isfinite(force)) largest[c] = std::fmax(largest[c], force);
+    }
+  }
+  const auto is_far = [&](const MotionInstant& from, const MotionInstant& to) {
+    for (std::size_t c = 0; c < class_count; ++c) {
+      const double motion_of_wall = to.contacts[c].displacement - from.contacts[c].displacement;
+      if (std::abs(motion_of_wall) > k_largest_motion * motion.initial_radius) return true;
+      const double change = std::abs(to.contacts[c].force - from.contacts[c].force);
+      if (change > k_largest_force_change * largest[c]) return true;
+    }
+    return false;
+  };
+  /// True where a wall begins, stops or turns.
+  const auto turns = [&](std::size_t i) {
+    for (std::size_t c = 0; c < class_count; ++c) {
+      const auto displacement = [&](std::size_t k) { return motion.instants[k].contacts[c].displacement; };
+      const double before = displacement(i) - displacement(i - 1);
+      const double after = displacement(i + 1) - displacement(i);
+      if (before * after <= 0.0 && before != after) return true;
+    }
+    return false;
+  };
+  std::vector<std::size_t> chosen;
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < motion.instants.size(); ++i) {
+    const bool is_end = i + 1 == motion.instants.size();
+    if (!is_end && !turns(i) && !is_far(motion.instants[last], motion.instants[i + 1])) continue;
+    chosen.push_back(i);
+    last = i;
+  }
+  return chosen;
+}
+
+std::vector<Column> columns_of(const Motion& motion) {
+  std::vector<Column> columns{{"time", "s"}, {"volume", "m3"}, {"work", "J"}};
+  for (const std::string& name : motion.classes) {
+    columns.push_back({name + ".displacement", "m"});
+    columns.push_back({name + ".overlap", "m"});
+    columns.push_back({name + ".force", "N"});
+    columns.push_back({name + ".contact_radius", "m"});
+    columns.push_back({name + ".pressure", "Pa"});
+  }
+  return columns;
+}
+
+/// Computes the motion of a run on one mesh.
+class Elements {
+ public:
+  Elements(const Motion& motion, const ContinuumMaterial& material, const std::vector<std::size_t>& instants,
+           const SectorMeshSize& size)
+      : motion_(motion), problem_{.sector = sector_of(motion), .mesh = {}, .material = material, .instants = {}} {
+    problem_.mesh = sector_mesh(size, problem_.sector.angle);
+    for (const std::size_t i : instants) {
+      WallPositions& positions = problem_.instants.emplace_back();
+      for (const SectorWall& wall : problem_.sector.walls) {
+        positions.push_back(displacement(motion.instants[i], wall.contact_class));
+      }
+    }
+    std::vector<Eigen::Vector3d> nodes;
+    for (const auto& line : problem_.mesh.surface) {
+      for (const std::size_t node : line) nodes.push_back(problem_.mesh.nodes[node]);
+    }
+    initial_volume_ = volume_below(surface_of(nodes));
+  }
+
+  [[nodiscard]] std::size_t element_count() const noexcept { return problem_.mesh.bricks.size(); }
+
+  /// States at the instants, up to where CalculiX ends.
+  std::vector<ParticleState> solve(const ContinuumOptions& options, const std::string& name,
+                                   std::string& failure) const {
+    std::function<void(std::size_t)> progress;
+    if (options.progress) progress = [&](std::size_t done) { options.progress(done, problem_.instants.size()); };
+    const SectorSolution solution = monograin::solve(problem_, options.ccx, options.folder, name, progress);
+    failure = solution.failure;
+    std::vector<ParticleState> states;
+    for (std::size_t i = 0; i < solution.states.size(); ++i) {
+      states.push_back(state_of(solution.states[i], problem_.instants[i]));
+    }
+    return states;
+  }
+
+ private:
+  [[nodiscard]] double displacement(const MotionInstant& instant, std::size_t contact_class) const {
+    return instant.contacts[contact_class].displacement / motion_.initial_radius;
+  }
+  [[nodiscard]] SectorSurface surface_of(const std::vector<Eigen::Vector3d>& nodes) const {
+    return {.nodes = nodes, .longitudes = problem_.mesh.surface.size()};
+  }
+
+  [[nodiscard]] ParticleState state_of(const SectorState& sector, const WallPositions& positions) const {
+    const double radius = motion_.initial_radius;
+    const SectorSurface surface = surface_of(sector.surface);
+    const double sphere = 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3);
+    ParticleState state{.volume = sphere * volume_below(surface) / initial_volume_,
+                        .classes = std::vector<ClassState>(motion_.classes.size())};
+    // The first wall of a class is on the finer side of the mesh: it stands for the class.
+    for (std::size_t i = problem_.sector.walls.size(); i-- > 0;) {
+      const SectorWall& wall = problem_.sector.walls[i];
+      const double area = contact_area(surface, wall.axis, 1.0 - positions[i]);
+      state.classes[wall.contact_class] = {
+          .force = wall.multiplicity * sector.forces[i] * problem_.material.youngs_modulus * radius * radius,
+          .area = wall.multiplicity * area * radius * radius};
+    }
+    return state;
+  }
+
+  const Motion& motion_;
+  SectorProblem problem_;
+  double initial_volume_ = 0.0;
+};
+
+/// History of the states, and the work of the walls by the trapezoidal rule.
+Table history_of(const Motion& motion, const std::vector<std::size_t>& instants,
+                 const std::vector<ParticleState>& states) {
+  std::vector<double> wall_counts(motion.classes.size(), 0.0);
+  for (const MovingWall& wall : motion.walls) wall_counts[wall.contact_class] += 1.0;
+  Table history(columns_of(motion));
+  const double sphere = 4.0 / 3.0 * std::numbers::pi * std::pow(motion.initial_radius, 3);
+  const ParticleState undeformed{.volume = sphere, .classes = std::vector<ClassState>(motion.classes.size())};
+  double work = 0.0;
+  for (std::size_t row = 0; row <= states.size(); ++row) {
+    const MotionInstant& instant = motion.instants[row == 0 ? 0 : instants[row - 1]];
+    const MotionInstant& before = motion.instants[row < 2 ? 0 : instants[row - 2]];
+    const ParticleState& state = row == 0 ? undeformed : states[row - 1];
+    const ParticleState& last = row < 2 ? undeformed : states[row - 2];
+    std::vector<double> cells{instant.time, state.volume, 0.0};
+    for (std::size_t c = 0; c < motion.classes.size(); ++c) {
+      const ClassState& contact = state.classes[c];
+      const double displacement = instant.contacts[c].displacement;
+      work += wall_counts[c] * 0.5 * (contact.force + last.classes[c].force) *
+              (displacement - before.contacts[c].displacement);
+      for (const double value : {displacement, displacement, contact.force, contact.radius(), contact.pressure()}) {
+        cells.push_back(value);
+      }
+    }
+    cells[2] = work;
+    history.append(cells);
+  }
+  return history;
+}
+
+/// True for each chosen instant at which the first class that moves is deeper than ever before.
+std::vector<bool> loading_instants(const Motion& motion, const std::vector<std::size_t>& instants) {
+  const auto displacement = [&](std::size_t i, std::size_t c) { return motion.instants[i].contacts[c].displacement; };
+  std::size_t driven = 0;
+  while (driven + 1 < motion.classes.size() && displacement(instants.front(), driven) == displacement(0, driven)) {
+    ++driven;
+  }
+  std::vector<bool> loads;
+  double deepest = displacement(0, driven);
+  for (const std::size_t i : instants) {
+    loads.push_back(displacement(i, driven) > deepest);
+    deepest = std::fmax(deepest, displacement(i, driven));
+  }
+  return loads;
+}
+
+/// Largest difference between two series at some of the instants, over the largest value of the reference; NaN if there
+/// is none.
+template <class Counts>
+double largest_difference(const std::vector<double>& values, const std::vector<double>& reference, Counts&& counts) {
+  double difference = k_nan;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < std::min(values.size(), reference.size()); ++i) {
+    largest = std::fmax(largest, std::abs(reference[i]));
+    if (counts(i)) difference = std::fmax(difference, std::abs(values[i] - reference[i]));
+  }
+  return largest > 0.0 ? difference / largest : k_nan;
+}
+
+/// @param coarse  states on the coarser mesh; empty: no estimate of the error
+/// @param ratio   length of its elements over that of the mesh
+std::vector<ContinuumDifference> differences_of(const Motion& motion, const std::vector<std::size_t>& instants,
+                                                const std::vector<ParticleState>& states,
+                                                const std::vector<ParticleState>& coarse, double ratio) {
+  const std::vector<bool> loads = loading_instants(motion, instants);
+  std::vector<ContinuumDifference> list;
+  const auto add = [&](const std::string& column, std::size_t c, auto&& of_law, auto&& of_elements) {
+    std::vector<double> law;
+    for (const std::size_t i : instants) law.push_back(of_law(motion.instants[i].contacts[c]));
+    const auto series = [&](const std::vector<ParticleState>& of) {
+      std::vector<double> values;
+      for (const ParticleState& state : of) values.push_back(of_elements(state.classes[c]));
+      return values;
+    };
+    const std::vector<double> elements = series(states);
+    // The error falls in proportion to the length of the elements, or faster.
+    const double of_mesh =
+        largest_difference(series(coarse), elements, [](std::size_t) { return true; }) / (ratio - 1.0);
+    list.push_back({motion.classes[c] + column,
+                    largest_difference(law, elements, [&](std::size_t i) { return loads[i]; }),
+                    largest_difference(law, elements, [&](std::size_t i) { return !loads[i]; }), of_mesh});
+  };
+  for (std::size_t c = 0; c < motion.classes.size(); ++c) {
+    add(
+        ".force", c, [](const ContactInstant& law) { return law.force; },
+        [](const ClassState& state) { return state.force; });
+    add(
+        ".contact_radius", c, [](const ContactInstant& law) { return law.radius; },
+        [](const ClassState& state) { return state.radius(); });
+  }
+  return list;
+}
+
+/// Header of the law's history, as that of finite elements.
+std::vector<std::pair<std::string, std::string>> header_of(const Run& law, const ContinuumRun& result,
+                                                           std::string_view mesh) {
+  std::vector<std::pair<std::string, std::string>> header;
+  for (const auto& [key, value] : law.record.history.header) {
+    if (key == "rtol" || key == "atol" || key == "reference") continue;
+    header.emplace_back(key, value);
+    if (key == "status") header.back().second = to_string(result.run.record.status);
+    if (key == "model") header.back().second = "continuum";
+    if (key == "integrator") {
+      header.back().second = fmt::format("{}, mesh {}, {} elements", result.solver, mesh, result.elements);
+    }
+  }
+  return header;
+}
+
+}  // namespace
+
+ContinuumMaterial continuum_material_of(const CheckedScenario& scenario) {
+  const Model& model = *find_model(scenario.model);
+  if (model.continuum_material == nullptr) {
+    std::vector<std::string_view> names;
+    for (const Model& other : model_catalogue()) {
+      if (other.continuum_material != nullptr) names.push_back(other.name);
+    }
+    throw std::invalid_argument(fmt::format("model {} has no material for finite elements; expected one of {}",
+                                            scenario.model, fmt::join(names, ", ")));
+  }
+  ContinuumMaterial material = model.continuum_material(model_input(scenario));
+  const double poisson_ratio = material.poisson_ratio;
+  if (poisson_ratio > k_largest_poisson_ratio) {
+    throw std::invalid_argument(
+        fmt::format("finite elements of this kind lock for material.poisson_ratio = {:g}; expected at most {:g}",
+                    poisson_ratio, k_largest_poisson_ratio));
+  }
+  const double bulk_modulus = material.youngs_modulus / (3.0 * (1.0 - 2.0 * poisson_ratio));
+  if (!material.flow.empty() && bulk_modulus > k_locking_ratio * material.flow.back().stress) {
+    material.differences.push_back(fmt::format(
+        "finite elements of this kind are too stiff where the bulk modulus is {:.0f} times the yield stress: "
+        "area up to 5 %, pressure up to 40 % off for E/Y = 2000",
+        bulk_modulus / material.flow.back().stress));
+  }
+  return material;
+}
+
+ContinuumRun run_continuum(const Run& law, const ContinuumOptions& options) {
+  const ContinuumMaterial material = continuum_material_of(law.scenario);
+  const Motion motion = motion_of(law.scenario, law.record.history);
+  const std::vector<std::size_t> instants = chosen_instants(motion);
+  if (instants.empty()) throw std::invalid_argument("the run of the law ended where it began: " + law.record.message);
+  const auto& meshes = sector_of(motion).is_axisymmetric ? k_wedge_meshes : k_sector_meshes;
+  const auto level =
+      static_cast<std::size_t>(std::ranges::find(k_continuum_meshes, options.mesh) - k_continuum_meshes.begin()) + 1;
+  ContinuumRun result;
+  result.run.scenario = law.scenario;
+  result.run.classes = law.classes;
+  result.solver = calculix_version(options.ccx, options.folder);
+  RunRecord& record = result.run.record;
+  record.warnings = material.differences;
+
+  const Elements elements(motion, material, instants, meshes[level]);
+  result.elements = elements.element_count();
+  std::string failure;
+  const std::vector<ParticleState> states = elements.solve(options, "continuum", failure);
+  record.status = failure.empty() ? law.record.status : RunStatus::failed;
+  record.message = failure.empty() ? law.record.message : failure;
+  std::vector<ParticleState> coarse;
+  if (options.estimates_error) {
+    const Elements coarser(motion, material, instants, meshes[level - 1]);
+    coarse = coarser.solve(options, "coarser", failure);
+    if (!failure.empty()) record.warnings.push_back("the coarser mesh: " + failure);
+  }
+  result.differences = differences_of(motion, instants, states, coarse,
+                                      static_cast<double>(meshes[level].meridian) / meshes[level - 1].meridian);
+  record.history = history_of(motion, instants, states);
+  record.history.header = header_of(law, result, options.mesh);
+  record.events = Table(law.record.events.columns());
+  record.events.header = record.history.header;
+  return result;
+}
+
+std::string continuum_json(const ContinuumRun& result, std::string_view mesh) {
+  using Json = nlohmann::ordered_json;
+  Json json = Json::parse(run_json(result.run));
+  json["model"] = "continuum";
+  json["citation"] = {
+      "G. Dhondt (2004), The Finite Element Method for Three-Dimensional Thermomechanical Applications, "
+      "Wiley, doi:10.1002/0470021217"};
+  for (const char* key : {"skipped", "sensitivities", "integrator", "tolerances", "statistics", "timings_s"}) {
+    json.erase(key);
+  }
+  Json differences = Json::array();
+  for (const auto& [column, loading, unloading, mesh_error] : result.differences) {
+    differences.push_back({{"column", column}, {"loading", loading}, {"unloading", unloading}, {"mesh", mesh_error}});
+  }
+  json["elements"] = {{"solver", result.solver},
+                      {"mesh", mesh},
+                      {"count", result.elements},
+                      {"law_of", result.run.scenario.model},
+                      {"differences", differences}};
+  return json.dump(2) + '\n';
+}
+
+}  // namespace monograin

@@ -1,0 +1,130 @@
+#include "continuum/continuum.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "support/refusal.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test_run.hpp"
+#include "support/text_file.hpp"
+
+namespace monograin {
+namespace {
+
+CheckedScenario ready(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return read_scenario(MONOGRAIN_SOURCE_DIR "/scenarios/" + name, overrides);
+}
+
+TEST(ContinuumMaterial, HasTheYieldStressOfAnElasticPlasticLaw) {
+  for (const char* name : {"die.toml", "cel.toml"}) {
+    const ContinuumMaterial material = continuum_material_of(ready(name));
+    EXPECT_EQ(material.youngs_modulus, 1e9) << name;
+    EXPECT_EQ(material.poisson_ratio, 0.3) << name;
+    ASSERT_EQ(material.flow.size(), 1U) << name;
+    EXPECT_EQ(material.flow[0].stress, 50e6) << name;
+    EXPECT_EQ(material.differences.size(), 0U) << name;
+  }
+}
+
+TEST(ContinuumMaterial, OfAnElasticLawDoesNotFlow) {
+  EXPECT_TRUE(continuum_material_of(ready("hertz.toml")).flow.empty());
+}
+
+TEST(ContinuumMaterial, SaysThatAdhesionIsLeftOut) {
+  const ContinuumMaterial material = continuum_material_of(ready("adhesion.toml"));
+  ASSERT_FALSE(material.differences.empty());
+  EXPECT_TRUE(contains(material.differences[0], "adhesion"));
+}
+
+TEST(ContinuumMaterial, FollowsThePowerLawOfTheTotalStrain) {
+  const std::vector<std::string> constants{"material.youngs_modulus='70 GPa'", "material.poisson_ratio=0.3"};
+  const CheckedScenario scenario = ready("hardening.toml", constants);
+  const double strength = scenario.material.at("strength");
+  const double exponent = scenario.material.at("hardening_exponent");
+  const ContinuumMaterial material = continuum_material_of(scenario);
+  ASSERT_GT(material.flow.size(), 50U);
+  EXPECT_EQ(material.flow[0].plastic_strain, 0.0);
+  for (const auto& [strain, stress] : material.flow) {
+    EXPECT_NEAR(strength * std::pow(strain + stress / 70e9, exponent) / stress, 1.0, 1e-9) << strain;
+  }
+  for (std::size_t i = 1; i < material.flow.size(); ++i) {
+    EXPECT_GT(material.flow[i].plastic_strain, material.flow[i - 1].plastic_strain);
+  }
+}
+
+TEST(ContinuumMaterial, OfAnIdeallyPlasticPowerLawHasItsStrength) {
+  const ContinuumMaterial material =
+      continuum_material_of(ready("hardening.toml", {"material.youngs_modulus='70 GPa'", "material.poisson_ratio=0.3",
+                                                     "material.hardening_exponent=0", "material.strength='100 MPa'"}));
+  for (const FlowPoint& point : material.flow) EXPECT_DOUBLE_EQ(point.stress, 100e6);
+}
+
+TEST(ContinuumMaterial, RefusesWhatIsNoElasticPlasticBody) {
+  const auto refused = [](const CheckedScenario& scenario) {
+    return refusal<std::invalid_argument>([&] { return continuum_material_of(scenario); });
+  };
+  EXPECT_TRUE(contains(refused(ready("packing.toml")), "expected one of "));
+  EXPECT_TRUE(contains(refused(ready("hardening.toml")), "expected youngs_modulus in [material]"));
+  EXPECT_TRUE(
+      contains(refused(ready("hardening.toml", {"material.youngs_modulus='70 GPa'", "material.poisson_ratio=0.3",
+                                                "material.hardening_exponent=1"})),
+               "exponent below 1"));
+  EXPECT_TRUE(contains(refused(ready("nonlocal.toml", {"material.poisson_ratio=0.495"})), "at most 0.49"));
+}
+
+TEST(ContinuumMaterial, WarnsWhereBricksLock) {
+  EXPECT_TRUE(continuum_material_of(ready("cel.toml", {"material.yield_stress='5 MPa'"})).differences.empty());
+  const ContinuumMaterial stiff = continuum_material_of(ready("cel.toml", {"material.yield_stress='2 MPa'"}));
+  ASSERT_EQ(stiff.differences.size(), 1U);
+  EXPECT_TRUE(contains(stiff.differences[0], "417 times the yield stress"));
+}
+
+/// Displacements of the axial wall, over R0, at which finite elements are computed for a scenario.
+std::vector<double> computed_displacements(const CheckedScenario& scenario) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "ccx", "#!/bin/sh\n");
+  std::filesystem::permissions(folder.path() / "ccx", std::filesystem::perms::owner_all);
+  const ContinuumRun result = run_continuum(
+      run_scenario(scenario),
+      {.mesh = "coarse", .estimates_error = false, .ccx = folder.path() / "ccx", .folder = folder.path()});
+  EXPECT_EQ(result.run.record.status, RunStatus::failed);
+  std::vector<double> displacements;
+  const std::string text = read_text(folder.path() / "continuum.inp");
+  const std::string key = "WALL0,3,3,";
+  for (std::size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1)) {
+    displacements.push_back(-std::stod(text.substr(at + key.size(), 30)) / 10.0);
+  }
+  return displacements;
+}
+
+TEST(RunContinuum, ComputesTheTurnsOfTheWallsAndSmallStepsBetween) {
+  const std::vector<double> displacements = computed_displacements(ready("cel.toml"));
+  std::vector<double> turns;
+  double last = 0.0;
+  for (std::size_t i = 0; i < displacements.size(); ++i) {
+    EXPECT_LE(std::abs(displacements[i] - last), 0.0101) << i;
+    const bool is_end = i + 1 == displacements.size();
+    if (is_end || (displacements[i] - last) * (displacements[i + 1] - displacements[i]) < 0.0) {
+      turns.push_back(displacements[i]);
+    }
+    last = displacements[i];
+  }
+  ASSERT_EQ(turns.size(), 3U);
+  EXPECT_NEAR(turns[0], 0.40, 1e-12);
+  EXPECT_NEAR(turns[1], 0.37, 1e-12);
+  EXPECT_NEAR(turns[2], 0.42, 1e-12);
+  EXPECT_LT(displacements.size(), 110U);
+}
+
+TEST(RunContinuum, FollowsTheWallsThatAForceMoves) {
+  const CheckedScenario scenario = ready("force.toml");
+  const Table history = record_run(scenario).history;
+  const std::vector<double> displacements = computed_displacements(scenario);
+  const std::vector<double> of_law = history.column("axial.displacement");
+  EXPECT_NEAR(*std::ranges::max_element(displacements), *std::ranges::max_element(of_law) / scenario.radius, 1e-9);
+}
+
+}  // namespace
+}  // namespace monograin
