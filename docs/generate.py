@@ -509,6 +509,8 @@ def write_models(program, schema, ready):
             if "centre" in sections:
                 page += "Centre: " + ", ".join(f"`{word}`" for word in sections["centre"][0].split(", ")) + "."
             page += "\n\n"
+        if "other programs" in sections:
+            page += f"Other programs that compute the same test: {sections['other programs'][0]}.\n\n"
         regimes, events = terms(sections["regimes"]), terms(sections["events"])
         page += "## Regimes\n\n" + table(["regime", "meaning"], [[f"`{a}`", b] for a, b in regimes])
         page += "\n## Events\n\n" + table(["event", "meaning"], [[f"`{a}`", b] for a, b in events])

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -52,32 +53,40 @@ void print_differences(const ContinuumRun& result, bool has_error) {
   print_data("{}", text);
 }
 
-/// Removes the files of CalculiX.
-void clear(const fs::path& folder) {
+/// Removes files of CalculiX: all, or those that nobody wants.
+void clear(const fs::path& folder, bool keeps_files) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
-  for (const fs::path& file : files) fs::remove(file);
+  for (const fs::path& file : files) {
+    const bool is_wanted = std::ranges::find(k_calculix_files, file.filename().string()) != k_calculix_files.end();
+    if (!keeps_files || !is_wanted) fs::remove(file);
+  }
 }
 
 int run_command(const ContinuumCommand& command) {
   const CheckedScenario scenario = read_scenario(command.file, command.overrides, FileKind::any);
-  static_cast<void>(or_usage_error(command.file, [&] { return continuum_material_of(scenario); }));
+  const ContinuumMaterial material = or_usage_error(command.file, [&] { return continuum_material_of(scenario); });
   ContinuumOptions options{
       .mesh = command.mesh, .estimates_error = command.estimates_error, .ccx = find_calculix(), .folder = {}};
   const fs::path folder =
       command.output.empty() ? fs::path("runs") / (folder_name(scenario) + "-continuum") : fs::path(command.output);
-  StagedFolder staged(folder, k_run_marker, k_run_tables);
+  std::vector<std::string_view> names(k_run_tables.begin(), k_run_tables.end());
+  if (command.keeps_files) names.insert(names.end(), k_calculix_files.begin(), k_calculix_files.end());
+  StagedFolder staged(folder, k_run_marker, names);
   options.folder = fs::absolute(staged.path());
 
   const Run law = run_scenario(scenario);
   for (const std::string& warning : law.record.warnings) say("warning: {}: {}\n", scenario.model, warning);
+  for (const std::string& difference : material.differences) say("warning: {}\n", difference);
+  say("{}: {}, {} rows; CalculiX computes on the mesh {}\n", scenario.name, to_string(law.record.status),
+      law.record.history.row_count(), command.mesh);
   ContinuumRun result = [&] {
     ProgressBar bar("instants");
     options.progress = [&bar](std::size_t done, std::size_t of) { bar.show(done, of); };
     return or_usage_error(command.file, [&] { return run_continuum(law, options); });
   }();
   const RunRecord& record = result.run.record;
-  if (!command.keeps_files) clear(staged.path());
+  clear(staged.path(), command.keeps_files);
   write_csv(staged.path() / k_run_tables[0], record.history);
   write_csv(staged.path() / k_run_tables[1], record.events);
   write_text_file(staged.path() / k_run_marker, continuum_json(result, command.mesh));

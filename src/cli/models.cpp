@@ -108,6 +108,10 @@ void print_model(const Model& model) {
   if (!model.has_walls()) print_steps(model);
   if (!model.configurations.empty()) print_data("\nconfigurations: {}\n", fmt::join(model.configurations, ", "));
   if (model.has_walls()) print_data("centre: fixed{}\n", model.has_free_centre ? ", equilibrium" : "");
+  std::vector<std::string_view> others;
+  if (model.lammps_law != nullptr) others.push_back("LAMMPS (monograin export lammps)");
+  if (model.continuum_material != nullptr) others.push_back("CalculiX (monograin continuum)");
+  if (!others.empty()) print_data("other programs: {}\n", fmt::join(others, ", "));
   print_terms("regimes", model.regimes);
   print_terms("events", model.events);
   print_data("\nvalidity\n");

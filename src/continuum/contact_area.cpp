@@ -39,7 +39,10 @@ class ContactMap {
     for (std::size_t k = 0; k + 1 < longitudes_; ++k) {
       for (std::size_t j = 0; j + 1 < count_; ++j) {
         const std::array corners{index(k, j), index(k, j + 1), index(k + 1, j + 1), index(k + 1, j)};
-        sum += part_of({corners[0], corners[1], corners[2]}) + part_of({corners[0], corners[2], corners[3]});
+        // Half of each division into two triangles: mirror images then have the same area.
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+          sum += 0.5 * part_of({corners[i], corners[(i + 1) % 4], corners[(i + 2) % 4]});
+        }
       }
     }
     return sum;

@@ -30,8 +30,8 @@ struct ContinuumOptions {
 
 /// Largest differences in a quantity of a contact class, over the quantity's largest value. NaN: there are none.
 struct ContinuumDifference {
-  std::string column;       ///< without the unit
-  double loading = 0.0;     ///< between the law and finite elements where the driven walls are deeper than before
+  std::string column;    ///< without the unit
+  double loading = 0.0;  ///< between the law and finite elements where the first class that moves is deeper than before
   double unloading = 0.0;   ///< where they are not
   double mesh_error = 0.0;  ///< estimate of the finite elements' own error
 };
@@ -49,14 +49,18 @@ struct ContinuumRun {
 [[nodiscard]] ContinuumMaterial continuum_material_of(const CheckedScenario& scenario);
 
 /// Computes by finite elements what the law of a recorded run stands for: a homogeneous sphere, frictionless walls,
-/// finite strain (docs/theory/continuum.md). The walls move as in the run, also where a force drives them. Rows of the
-/// history are instants of the run, chosen where a wall has moved by 0.01 R0 or a force of the law has changed by 4 %
-/// of its largest value.
+/// finite strain (docs/howto/finite-elements.md). The walls move as in the run, also where a force drives them. Rows of
+/// the history are instants of the run, chosen where a wall has moved by 0.01 R0 or a force of the law has changed by 4
+/// % of its largest value.
 /// @param law  run of the scenario
 /// @throws std::invalid_argument for walls without the symmetry of sector_of(), a material that
 /// continuum_material_of() refuses, and a run without a step
 /// @throws std::runtime_error if CalculiX cannot be started
 [[nodiscard]] ContinuumRun run_continuum(const Run& law, const ContinuumOptions& options);
+
+/// Files of CalculiX in ContinuumOptions::folder that a user may want.
+inline constexpr std::array<std::string_view, 6> k_calculix_files{"continuum.inp", "continuum.dat", "continuum.log",
+                                                                  "coarser.inp",   "coarser.dat",   "coarser.log"};
 
 /// Text of run.json for the folder of the finite elements.
 [[nodiscard]] std::string continuum_json(const ContinuumRun& result, std::string_view mesh);

@@ -190,6 +190,12 @@ std::vector<double> longitudes_of(const SectorMeshSize& size, double angle) {
 
 }  // namespace
 
+std::vector<std::size_t> SectorMesh::surface_nodes() const {
+  std::vector<std::size_t> list;
+  for (const auto& line : surface) list.insert(list.end(), line.begin(), line.end());
+  return list;
+}
+
 SectorMesh sector_mesh(const SectorMeshSize& size, double angle) {
   const MeridianMesh meridian(size);
   SectorMesh mesh;

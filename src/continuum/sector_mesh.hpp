@@ -26,7 +26,8 @@ struct SectorMesh {
   std::vector<std::size_t> equator;               ///< nodes with z = 0 of the first meridian, without the centre
   std::vector<std::vector<std::size_t>> surface;  ///< nodes from the pole to the equator, for each longitude
 
-  [[nodiscard]] std::size_t surface_count() const noexcept { return surface.size() * surface.front().size(); }
+  /// Nodes of the surface, longitude by longitude.
+  [[nodiscard]] std::vector<std::size_t> surface_nodes() const;
 };
 
 /// Makes the mesh for longitudes from 0 to `angle`. Elements are fine at the surface, four times as large in the

@@ -43,9 +43,13 @@ struct Motion {
   std::vector<MovingWall> walls{};
   std::vector<MotionInstant> instants{};  ///< times increase; the state just after an event stands for its instant
 
+  /// Motion of a wall from first touch on as seen from the centre, positive inward [m].
+  [[nodiscard]] double overlap(const MovingWall& wall, const MotionInstant& instant) const {
+    return instant.contacts[wall.contact_class].displacement + wall.normal.dot(instant.centre);
+  }
   /// Distance of a wall's plane from the present centre, along its outward normal [m].
   [[nodiscard]] double distance(const MovingWall& wall, const MotionInstant& instant) const {
-    return initial_radius - instant.contacts[wall.contact_class].displacement - wall.normal.dot(instant.centre);
+    return initial_radius - overlap(wall, instant);
   }
 };
 

@@ -1,18 +1,20 @@
 #include "history/external_program.hpp"
 
-#include <spawn.h>
+#include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
 namespace monograin {
@@ -21,6 +23,23 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds k_interval{100};
+
+std::string cannot_be_started(const fs::path& program, int error) {
+  return fmt::format("{} cannot be started: {}", program.string(), std::strerror(error));
+}
+
+/// Turns a new process into a program, or sends the reason why not. Calls only what is safe after fork().
+[[noreturn]] void become(const fs::path& program, const std::vector<char*>& argv, const fs::path& folder,
+                         const fs::path& log, int failure) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  const bool is_ready = chdir(folder.c_str()) == 0 && dup2(open("/dev/null", O_RDONLY), STDIN_FILENO) == STDIN_FILENO &&
+                        dup2(open(log.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0644), STDOUT_FILENO) == STDOUT_FILENO &&
+                        dup2(STDOUT_FILENO, STDERR_FILENO) == STDERR_FILENO;
+  if (is_ready) execv(program.c_str(), argv.data());
+  const int error = errno;
+  [[maybe_unused]] const ssize_t sent = write(failure, &error, sizeof error);
+  _exit(EXIT_FAILURE);
+}
 
 }  // namespace
 
@@ -43,28 +62,26 @@ int run_program(const fs::path& program, std::vector<std::string> words, const f
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = 0;
-  const int failure = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) {
-    throw std::runtime_error(fmt::format("{} cannot be started: {}", program.string(), std::strerror(failure)));
-  }
+  // The child sends the reason if it cannot start the program; else the end of the pipe closes.
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error(cannot_be_started(program, errno));
+  const pid_t child = fork();
+  if (child == 0) become(program, argv, folder, log, ends[1]);
+  const int fork_error = errno;
+  close(ends[1]);
+  int failure = child < 0 ? fork_error : 0;
+  if (child > 0 && read(ends[0], &failure, sizeof failure) != sizeof failure) failure = 0;
+  close(ends[0]);
   int status = 0;
-  for (;;) {
+  while (child > 0) {
     const pid_t ended = waitpid(child, &status, meanwhile ? WNOHANG : 0);
-    if (ended == child) break;
-    if (ended < 0 && errno != EINTR) return -1;
+    if (ended == child || (ended < 0 && errno != EINTR)) break;
     if (!meanwhile) continue;
     meanwhile();
     std::this_thread::sleep_for(k_interval);
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (failure != 0) throw std::runtime_error(cannot_be_started(program, failure));
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
 }  // namespace monograin

@@ -85,12 +85,32 @@ TEST_F(ContinuumCommand, IsNearHertzUnderAnElasticParticle) {
   EXPECT_TRUE(contains(outcome.out, "error of the elements")) << outcome.out;
   EXPECT_TRUE(contains(outcome.err, "-> runs/hertz-continuum")) << outcome.err;
   const Table history = read_csv(path("runs/hertz-continuum/history.csv"));
+  ASSERT_EQ(history.row_count(), 5U);
   // Finite strain makes the sphere stiffer than Hertz: by half the root of displacement/R0.
   for (std::size_t row = 2; row < history.row_count(); ++row) {
     const double depth = history.column("axial.displacement")[row] / 1e-3;
     const double hertz = 4.0 / 3.0 * 3e9 / (1.0 - 0.04) * std::pow(depth, 1.5) * 1e-6;
     EXPECT_NEAR(history.column("axial.force")[row] / hertz, 1.0 + 0.5 * std::sqrt(depth), 0.03) << depth;
   }
+}
+
+TEST_F(ContinuumCommand, GivesTheForcesOfAFineMeshAtAllWallsOfADie) {
+  write_text(path("die.toml"),
+             "model = 'cel'\n[particle]\nradius = '10 mm'\n[material]\nyoungs_modulus = '1 GPa'\npoisson_ratio = 0.3\n"
+             "yield_stress = '50 MPa'\n[loading]\nconfiguration = 'die'\n[[loading.steps]]\ndisplacement = '0.03 R0'\n"
+             "duration = '1 s'\n[output]\npoints = 2\n");
+  const Outcome outcome = monograin("continuum die.toml --mesh coarse -o fe");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Table history = read_csv(path("fe/history.csv"));
+  const Table fine = read_csv(std::string(k_curves) + "die_EY20_nu0.30.csv");
+  const auto ratio = [&](const std::string& column, const std::string& of_fine) {
+    return history.column(column).back() / 1e5 / at(fine, "delta_o_over_R0", 0.03, of_fine);
+  };
+  EXPECT_NEAR(ratio("axial.force", "axial_F_over_E_R0^2"), 1.0, 0.04);
+  // A contact of a few elements.
+  EXPECT_NEAR(ratio("lateral.force", "lateral_F_over_E_R0^2"), 1.0, 0.3);
+  const double volume = history.column("volume").back() / (4.0 / 3.0 * std::numbers::pi * 1e-6);
+  EXPECT_NEAR(volume, at(fine, "delta_o_over_R0", 0.03, "V_over_V0"), 3e-4);
 }
 
 TEST_F(ContinuumCommand, RefusesWhatFiniteElementsCannotStandForBeforeItRuns) {
@@ -105,9 +125,17 @@ TEST_F(ContinuumCommand, RefusesWhatFiniteElementsCannotStandForBeforeItRuns) {
   EXPECT_TRUE(contains(refused(k_ready + "hardening.toml'"), "expected youngs_modulus in [material]"));
   EXPECT_TRUE(
       contains(refused(k_ready + "nonlocal.toml' --set material.poisson_ratio=0.495"), "expected at most 0.49"));
-  EXPECT_TRUE(contains(refused(k_ready + "free-centre.toml'"), "finite elements are made for"));
+  EXPECT_TRUE(
+      contains(refused(k_ready + "free-centre.toml' --set loading.centre=fixed"), "wall 'punch' has no such partner"));
   EXPECT_TRUE(contains(refused(k_ready + "oblique-die.toml'"), "perpendicular to each other"));
   EXPECT_TRUE(contains(refused(k_ready + "die.toml' --mesh finest"), "coarse"));
+}
+
+TEST_F(ContinuumCommand, IsListedWithTheModelsThatItTakes) {
+  EXPECT_TRUE(contains(monograin("models mdr").out,
+                       "other programs: LAMMPS (monograin export lammps), CalculiX (monograin continuum)\n"));
+  EXPECT_TRUE(contains(monograin("models cel").out, "other programs: CalculiX (monograin continuum)\n"));
+  EXPECT_FALSE(contains(monograin("models compressible").out, "other programs"));
 }
 
 TEST_F(ContinuumCommand, SaysHowToGetCalculix) {
@@ -121,9 +149,28 @@ TEST_F(ContinuumCommand, EndsLikeASolverThatGivesUpWhereCalculixDoes) {
   const Outcome outcome =
       with_stand_in("echo ' *ERROR: too many cutbacks'; exit 201\n", k_ready + "die.toml' --keep -o fe");
   EXPECT_EQ(outcome.code, 4);
-  EXPECT_TRUE(contains(outcome.err, "failed: CalculiX ended with code 201: ERROR: too many cutbacks")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "failed: CalculiX ended with code 201; its last words: ERROR: too many cutbacks"))
+      << outcome.err;
   EXPECT_EQ(read_csv(path("fe/history.csv")).row_count(), 1U);
   EXPECT_TRUE(contains(text("fe/continuum.inp"), "*ELEMENT, TYPE=C3D8"));
+}
+
+TEST_F(ContinuumCommand, KeepsThreeFilesAndRefusesToReplaceAUsersBeforeItComputes) {
+  std::filesystem::create_directory(path("fe"));
+  write_text(path("fe/continuum.dat"), "mine\n");
+  const Outcome refused = with_stand_in("touch ../called\n", k_ready + "die.toml' --keep -o fe");
+  EXPECT_EQ(refused.code, 2) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "continuum.dat")) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(path("called")));
+  EXPECT_EQ(text("fe/continuum.dat"), "mine\n");
+  EXPECT_EQ(with_stand_in("touch $1.dat $1.frd $1.sta spooles.out\n", k_ready + "die.toml' --keep -o other").code, 4);
+  std::vector<std::string> kept;
+  for (const auto& entry : std::filesystem::directory_iterator(path("other"))) {
+    if (entry.path().stem() == "continuum") kept.push_back(entry.path().extension());
+  }
+  std::ranges::sort(kept);
+  EXPECT_EQ(kept, (std::vector<std::string>{".dat", ".inp", ".log"}));
+  EXPECT_FALSE(std::filesystem::exists(path("other/spooles.out")));
 }
 
 }  // namespace

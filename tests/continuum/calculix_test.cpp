@@ -113,7 +113,13 @@ TEST(Solve, KeepsWhatIsComputedAndSaysWhyItEnds) {
       stand_in(folder, shrunk(problem, 1), "echo ' *ERROR: too many cutbacks'; echo ' best solution'; exit 201\n");
   const SectorSolution solution = solve(problem, ccx, folder.path(), "job", {});
   EXPECT_EQ(solution.states.size(), 1U);
-  EXPECT_EQ(solution.failure, "CalculiX ended with code 201: ERROR: too many cutbacks");
+  EXPECT_EQ(solution.failure, "CalculiX ended with code 201; its last words: ERROR: too many cutbacks");
+}
+
+TEST(Solve, SaysWhichSignalEndedCalculix) {
+  const TemporaryFolder folder;
+  const auto ccx = stand_in(folder, "", "kill -KILL $$\n");
+  EXPECT_EQ(solve(die_problem(), ccx, folder.path(), "job", {}).failure, "CalculiX was ended by signal 9 (Killed)");
 }
 
 TEST(Solve, CountsTheInstantsWhileCalculixGoesOn) {

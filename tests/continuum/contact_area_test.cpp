@@ -15,9 +15,7 @@ constexpr double k_half_quarter = std::numbers::pi / 4.0;
 
 std::vector<Eigen::Vector3d> surface_nodes(const SectorMesh& mesh) {
   std::vector<Eigen::Vector3d> nodes;
-  for (const auto& line : mesh.surface) {
-    for (const std::size_t node : line) nodes.push_back(mesh.nodes[node]);
-  }
+  for (const std::size_t node : mesh.surface_nodes()) nodes.push_back(mesh.nodes[node]);
   return nodes;
 }
 
@@ -55,6 +53,14 @@ TEST(ContactArea, OfTheSideOfASectorIsAQuarterOfItsDisc) {
   for (const double radius : {0.15, 0.3, 0.5}) {
     const double exact = 0.25 * std::numbers::pi * radius * radius;
     EXPECT_NEAR(area_between(mesh, 0, -1.0, radius, 1.35) / exact, 1.0, 0.04) << radius;
+  }
+}
+
+TEST(ContactArea, OfMirrorImagesIsTheSame) {
+  const SectorMesh mesh = sector_mesh({24, 6, 1.0}, 2.0 * k_half_quarter);
+  for (const double radius : {0.08, 0.15, 0.2, 0.4}) {
+    const double at_x = area_between(mesh, 0, -1.0, radius, 1.35);
+    EXPECT_NEAR(area_between(mesh, 1, -1.0, radius, 1.35) / at_x, 1.0, 1e-9) << radius;
   }
 }
 

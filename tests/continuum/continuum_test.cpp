@@ -78,18 +78,22 @@ TEST(ContinuumMaterial, WarnsWhereBricksLock) {
   EXPECT_TRUE(continuum_material_of(ready("cel.toml", {"material.yield_stress='5 MPa'"})).differences.empty());
   const ContinuumMaterial stiff = continuum_material_of(ready("cel.toml", {"material.yield_stress='2 MPa'"}));
   ASSERT_EQ(stiff.differences.size(), 1U);
-  EXPECT_TRUE(contains(stiff.differences[0], "417 times the yield stress"));
+  EXPECT_TRUE(contains(stiff.differences[0], "417 times the flow stress"));
+}
+
+/// Finite elements of a scenario by a program in the place of CalculiX.
+ContinuumRun run_by(const std::string& script, const CheckedScenario& scenario, const TemporaryFolder& folder) {
+  write_text(folder.path() / "ccx", "#!/bin/sh\n" + script);
+  std::filesystem::permissions(folder.path() / "ccx", std::filesystem::perms::owner_all);
+  return run_continuum(
+      run_scenario(scenario),
+      {.mesh = "coarse", .estimates_error = false, .ccx = folder.path() / "ccx", .folder = folder.path()});
 }
 
 /// Displacements of the axial wall, over R0, at which finite elements are computed for a scenario.
 std::vector<double> computed_displacements(const CheckedScenario& scenario) {
   const TemporaryFolder folder;
-  write_text(folder.path() / "ccx", "#!/bin/sh\n");
-  std::filesystem::permissions(folder.path() / "ccx", std::filesystem::perms::owner_all);
-  const ContinuumRun result = run_continuum(
-      run_scenario(scenario),
-      {.mesh = "coarse", .estimates_error = false, .ccx = folder.path() / "ccx", .folder = folder.path()});
-  EXPECT_EQ(result.run.record.status, RunStatus::failed);
+  EXPECT_EQ(run_by("", scenario, folder).run.record.status, RunStatus::failed);
   std::vector<double> displacements;
   const std::string text = read_text(folder.path() / "continuum.inp");
   const std::string key = "WALL0,3,3,";
@@ -97,6 +101,52 @@ std::vector<double> computed_displacements(const CheckedScenario& scenario) {
     displacements.push_back(-std::stod(text.substr(at + key.size(), 30)) / 10.0);
   }
   return displacements;
+}
+
+/// A stand-in whose walls bear forces of 3 and 2 of CalculiX's units at every instant, on a surface that does not move.
+constexpr const char* k_constant_forces = R"sh(steps=$(grep -c '^[*]STEP' continuum.inp)
+for i in $(seq "$steps"); do
+  printf ' displacements (vx,vy,vz) for set SURFACE and time\n\n'
+  printf ' total force (fx,fy,fz) for set WALL0 and time\n\n 0. 0. -3.\n'
+  printf ' total force (fx,fy,fz) for set WALL1 and time\n\n -2. 0. 0.\n'
+done > continuum.dat
+)sh";
+
+TEST(RunContinuum, GivesEveryClassTheForceOfAWholeWallAndAddsUpTheWork) {
+  const TemporaryFolder folder;
+  const CheckedScenario scenario = ready("cel.toml", {"loading.configuration=hydrostatic"});
+  const TemporaryFolder other;
+  const ContinuumRun die = run_by(k_constant_forces, ready("cel.toml"), folder);
+  ASSERT_EQ(die.run.record.status, RunStatus::complete) << die.run.record.message;
+  const Table& history = die.run.record.history;
+  const double unit = 1e9 * 0.01 * 0.01 / (1000.0 * 10.0 * 10.0);
+  const std::size_t last = history.row_count() - 1;
+  EXPECT_NEAR(history.column("axial.force")[last], 8.0 * 3.0 * unit, 1e-9);
+  EXPECT_NEAR(history.column("lateral.force")[last], 4.0 * 2.0 * unit, 1e-9);
+  // Two axial walls at a constant force; the first row has none, so that its interval counts half.
+  const std::vector<double> displacement = history.column("axial.displacement");
+  const double force = 8.0 * 3.0 * unit;
+  EXPECT_NEAR(history.column("work")[last], 2.0 * force * (displacement[last] - 0.5 * displacement[1]), 1e-9);
+  // Six walls at once are one class, with the state of the walls on the axis.
+  const ContinuumRun six = run_by(k_constant_forces, scenario, other);
+  EXPECT_NEAR(six.run.record.history.column("axial.force")[1], 8.0 * 3.0 * unit, 1e-9);
+}
+
+TEST(RunContinuum, KeepsTheLimitAtWhichTheLawStops) {
+  const TemporaryFolder folder;
+  const ContinuumRun stopped =
+      run_by(k_constant_forces, ready("cel.toml", {"loading.steps[0].displacement='0.9 R0'"}), folder);
+  EXPECT_EQ(stopped.run.record.status, RunStatus::stopped);
+  EXPECT_TRUE(stopped.run.record.limit);
+}
+
+TEST(RunContinuum, WarnsWhereRowsOfTheRunAreFarApart) {
+  const TemporaryFolder folder;
+  const ContinuumRun coarse = run_by("", ready("cel.toml", {"output.points=5"}), folder);
+  ASSERT_EQ(coarse.run.record.warnings.size(), 1U);
+  EXPECT_TRUE(contains(coarse.run.record.warnings[0], "0.08 R0 apart")) << coarse.run.record.warnings[0];
+  const TemporaryFolder other;
+  EXPECT_TRUE(run_by("", ready("cel.toml"), other).run.record.warnings.empty());
 }
 
 TEST(RunContinuum, ComputesTheTurnsOfTheWallsAndSmallStepsBetween) {

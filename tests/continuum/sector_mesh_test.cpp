@@ -102,7 +102,7 @@ TEST(SectorMesh, HasNoGapsBetweenBricks) {
 TEST(SectorMesh, ListsSurfaceAxisAndEquator) {
   const SectorMesh mesh = sector_mesh({24, 5, 2.0}, k_quarter / 2.0);
   ASSERT_EQ(mesh.surface.size(), 6U);
-  EXPECT_EQ(mesh.surface_count(), 6U * 25U);
+  EXPECT_EQ(mesh.surface_nodes().size(), 6U * 25U);
   for (const auto& line : mesh.surface) {
     EXPECT_EQ(mesh.nodes[line.front()].z(), 1.0);
     EXPECT_EQ(mesh.nodes[line.back()].z(), 0.0);

@@ -28,10 +28,13 @@ TEST(Sector, OfADieHasTheMovingWallsOnItsAxis) {
   const Sector sector = sector_of(motion);
   EXPECT_NEAR(sector.angle, std::numbers::pi / 4.0, 1e-12);
   ASSERT_EQ(sector.walls.size(), 2U);
-  EXPECT_EQ(motion.classes[sector.walls[0].contact_class], "axial");
+  EXPECT_EQ(motion.classes[motion.walls[sector.walls[0].wall].contact_class], "axial");
   EXPECT_EQ(sector.walls[0].axis, 2);
-  EXPECT_EQ(motion.classes[sector.walls[1].contact_class], "lateral");
+  EXPECT_EQ(motion.classes[motion.walls[sector.walls[1].wall].contact_class], "lateral");
   EXPECT_EQ(sector.walls[1].axis, 0);
+  // The sector has an eighth of each axial contact and a quarter of each lateral one.
+  EXPECT_NEAR(sector.walls[0].multiplicity, 8.0, 1e-12);
+  EXPECT_NEAR(sector.walls[1].multiplicity, 4.0, 1e-12);
 }
 
 TEST(Sector, PutsThePairUnlikeTheOthersOnItsAxisAlsoWhereItMovesLeast) {
@@ -46,7 +49,7 @@ TEST(Sector, PutsThePairUnlikeTheOthersOnItsAxisAlsoWhereItMovesLeast) {
   const Motion motion = motion_of_run(between_walls(walls));
   const Sector sector = sector_of(motion);
   EXPECT_NEAR(sector.angle, std::numbers::pi / 4.0, 1e-12);
-  EXPECT_NEAR(motion.instants.back().contacts[sector.walls[0].contact_class].displacement, 0.02, 1e-12);
+  EXPECT_NEAR(motion.overlap(motion.walls[sector.walls[0].wall], motion.instants.back()), 0.02, 1e-12);
 }
 
 TEST(Sector, OfThreeDifferentPairsIsAQuarterWithTheDeepestOnItsAxis) {
@@ -55,8 +58,9 @@ TEST(Sector, OfThreeDifferentPairsIsAQuarterWithTheDeepestOnItsAxis) {
   EXPECT_NEAR(sector.angle, std::numbers::pi / 2.0, 1e-12);
   ASSERT_EQ(sector.walls.size(), 3U);
   const auto depth = [&](std::size_t i) {
-    return motion.instants.back().contacts[sector.walls[i].contact_class].displacement / motion.initial_radius;
+    return motion.overlap(motion.walls[sector.walls[i].wall], motion.instants.back()) / motion.initial_radius;
   };
+  for (const SectorWall& wall : sector.walls) EXPECT_NEAR(wall.multiplicity, 4.0, 1e-12);
   EXPECT_NEAR(depth(0), 0.2, 1e-12);
   EXPECT_NEAR(depth(1), 0.05, 1e-12);
   EXPECT_NEAR(depth(2), 0.0, 1e-12);
@@ -74,12 +78,20 @@ TEST(Sector, RefusesWallsWithoutMirrorPlanesAndNamesOne) {
                        "wall 'a' is not"));
 }
 
-TEST(Sector, RefusesACentreThatMoves) {
+TEST(Sector, SeesTheWallsFromACentreThatMoves) {
   CheckedScenario scenario =
       between_walls({wall("floor", -Eigen::Vector3d::UnitZ()), wall("punch", Eigen::Vector3d::UnitZ(), path({0.2}))});
   scenario.loading.centre_is_free = true;
-  EXPECT_TRUE(contains(refusal<std::invalid_argument>([&] { return sector_of(motion_of_run(scenario)); }),
-                       "centre stays where it is"));
+  const Motion motion = motion_of_run(scenario);
+  const Sector sector = sector_of(motion);
+  EXPECT_TRUE(sector.is_axisymmetric);
+  EXPECT_EQ(sector.places, (std::vector<std::size_t>{0, 0}));
+  EXPECT_NEAR(motion.overlap(motion.walls[sector.walls[0].wall], motion.instants.back()), 0.1, 1e-9);
+}
+
+TEST(Sector, PutsEveryWallOfTheMotionInItsPlace) {
+  const Motion motion = motion_of_run(mdr_scenario(Configuration::die, 50.0, 0.3, path({0.1})));
+  EXPECT_EQ(sector_of(motion).places, (std::vector<std::size_t>{0, 0, 1, 1, 1, 1}));
 }
 
 }  // namespace

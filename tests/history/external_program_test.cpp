@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
@@ -34,7 +36,7 @@ TEST_F(RunProgram, GivesTheExitCodeAndCatchesAllOutput) {
 
 TEST_F(RunProgram, GivesNoInput) { EXPECT_EQ(run("read line && exit 1; exit 0"), 0); }
 
-TEST_F(RunProgram, TellsASignalFromAnExitCode) { EXPECT_EQ(run("kill -TERM $$"), -1); }
+TEST_F(RunProgram, GivesTheSignalThatEndsTheProgramAsANegativeNumber) { EXPECT_EQ(run("kill -TERM $$"), -SIGTERM); }
 
 TEST_F(RunProgram, CallsBackUntilTheProgramEnds) {
   int calls = 0;
