@@ -31,6 +31,11 @@ endif()
 if(MONOGRAIN_HAS_STUDIES)
   monograin_find(ALGLIB libalglib-dev)
 endif()
+# The library of HDF5 is loaded by its name when a file of that format is written or read: linked, it would make every
+# start of the program longer. A build without its header refuses that format.
+find_path(MONOGRAIN_HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial)
+find_library(MONOGRAIN_HDF5_LIBRARY NAMES hdf5_serial hdf5)
+mark_as_advanced(MONOGRAIN_HDF5_INCLUDE_DIR MONOGRAIN_HDF5_LIBRARY)
 monograin_require_header(monograin_xxhash xxhash.h libxxhash-dev)
 target_compile_definitions(monograin_xxhash INTERFACE XXH_INLINE_ALL)
 if(MONOGRAIN_BUILD_TESTS)

@@ -28,6 +28,8 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "gnuplot-nox, fonts-dejavu-core")
+# Loaded, not linked: only sweeps with --format hdf5 need it.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS libhdf5-103-1)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "calculix-ccx")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 

@@ -96,21 +96,6 @@ void append_row(std::string& text, const Table& table, std::size_t row, int digi
   text += '\n';
 }
 
-/// Passes the text of a table to a sink: the header with the headings, then each row. The text is gathered in a string,
-/// because an output stream would swallow an allocation that fails, and the text would end there.
-template <class Sink>
-void for_each_part(const Table& table, int digits, Sink&& sink) {
-  std::string text;
-  append_header(text, table);
-  append_headings(text, table.columns());
-  sink(text);
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    text.clear();
-    append_row(text, table, row, digits);
-    sink(text);
-  }
-}
-
 // --- reading
 
 constexpr std::string_view k_blanks = " \t\r";
@@ -122,8 +107,9 @@ constexpr std::string_view k_blanks = " \t\r";
   return cell.starts_with('-') ? -magnitude : magnitude;
 }
 
-/// Number in a cell; none if any part of the cell is not a number. Independent of the locale.
-[[nodiscard]] std::optional<double> parsed_number(std::string_view cell) noexcept {
+}  // namespace
+
+std::optional<double> parsed_number(std::string_view cell) noexcept {
   if (cell.starts_with('+')) cell.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -133,7 +119,7 @@ constexpr std::string_view k_blanks = " \t\r";
   return value;
 }
 
-[[nodiscard]] Column parsed_heading(std::string_view heading) {
+Column parsed_heading(std::string_view heading) {
   const std::size_t bracket = heading.rfind('[');
   const bool has_unit =
       bracket != std::string_view::npos && bracket > 0 && heading.ends_with(']') && heading.size() > bracket + 2;
@@ -142,12 +128,14 @@ constexpr std::string_view k_blanks = " \t\r";
           .unit = std::string(heading.substr(bracket + 1, heading.size() - bracket - 2))};
 }
 
-[[nodiscard]] std::pair<std::string, std::string> parsed_header_line(std::string_view line) {
+std::pair<std::string, std::string> parsed_header_line(std::string_view line) {
   line = trimmed(line.substr(1), k_blanks);
   const std::size_t colon = line.ends_with(':') ? std::min(line.find(": "), line.size() - 1) : line.find(": ");
   if (colon == std::string_view::npos) return {std::string(line), {}};
   return {std::string(line.substr(0, colon)), std::string(trimmed(line.substr(colon + 1), k_blanks))};
 }
+
+namespace {
 
 /// Parser of a CSV text. It keeps cells as text until all rows are read: only then columns of numbers are known.
 class CsvText {
@@ -344,14 +332,28 @@ std::string csv_number(double value) {
   return text;
 }
 
+void for_each_csv_part(const Table& table, const TextSink& sink, int digits) {
+  // An output stream would swallow an allocation that fails, and the text would end there.
+  std::string text;
+  append_header(text, table);
+  append_headings(text, table.columns());
+  sink(text);
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    text.clear();
+    append_row(text, table, row, digits);
+    sink(text);
+  }
+}
+
 std::string csv_text(const Table& table, int digits) {
   std::string text;
-  for_each_part(table, digits, [&text](std::string_view part) { text += part; });
+  for_each_csv_part(
+      table, [&text](std::string_view part) { text += part; }, digits);
   return text;
 }
 
 void write_csv(const std::filesystem::path& file, const Table& table) {
-  write_text_file(file, [&table](const TextSink& sink) { for_each_part(table, k_all_digits, sink); });
+  write_text_file(file, [&table](const TextSink& sink) { for_each_csv_part(table, sink); });
 }
 
 Table read_csv(const std::filesystem::path& file, FileKind kind) {

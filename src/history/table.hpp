@@ -92,12 +92,23 @@ inline constexpr int k_all_digits = std::numeric_limits<double>::max_digits10;
 ///                written with all their digits.
 void append_csv_number(std::string& text, double value, int digits = k_all_digits);
 
+/// Number in a cell of a CSV file; none if any part of the cell is not a number. Independent of the locale.
+[[nodiscard]] std::optional<double> parsed_number(std::string_view cell) noexcept;
+/// Column without labels of a heading: name and unit.
+[[nodiscard]] Column parsed_heading(std::string_view heading);
+/// Key and value of a line `# key: value`, which has to begin with `#`.
+[[nodiscard]] std::pair<std::string, std::string> parsed_header_line(std::string_view line);
+
 /// Text of a table as CSV: `# key: value` lines, one row of headings, and the rows (`nan` for undefined values),
 /// independent of the locale. Numbers have as few digits, at most 17, as read_csv() needs to restore bitwise equal
 /// doubles. Nothing is quoted; a line break in a header line becomes a space.
 /// @param digits  significant digits; fewer than k_all_digits suit measured values, which are then not restored bitwise
 /// @throws std::invalid_argument if a heading or a word contains a comma, a quote or a line break
 [[nodiscard]] std::string csv_text(const Table& table, int digits = k_all_digits);
+
+/// Passes the text of csv_text() to a sink: the header with the headings, then each row.
+/// @throws std::invalid_argument as csv_text()
+void for_each_csv_part(const Table& table, const TextSink& sink, int digits = k_all_digits);
 
 /// Writes the text of a table to a file, completely or not at all, without ever holding the whole text.
 /// @throws std::runtime_error naming the file and why it cannot be written

@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view k_standard_input = "-";
+constexpr std::string_view k_partial_extension = ".partial";
 
 [[noreturn]] void fail(const fs::path& file, int error) {
   throw std::runtime_error(file.string() + ": cannot be written: " + std::generic_category().message(error));
@@ -34,7 +35,7 @@ class PartialFile {
   explicit PartialFile(const fs::path& file) {
     static std::atomic<unsigned> count{0};
     do {  // O_EXCL: never opens an existing file or link
-      path_ = file.parent_path() / fmt::format(".{}-{}.partial", getpid(), count++);
+      path_ = file.parent_path() / fmt::format(".{}-{}{}", getpid(), count++, k_partial_extension);
       descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (descriptor_ < 0 && errno == EEXIST);
     if (descriptor_ < 0) fail(file, errno);
@@ -46,6 +47,8 @@ class PartialFile {
     std::error_code ignored;
     if (!path_.empty()) fs::remove(path_, ignored);
   }
+
+  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
 
   /// @return true if everything was written; otherwise errno has the reason
   [[nodiscard]] bool write(std::string_view text) {
@@ -116,6 +119,22 @@ void write_text_file(const fs::path& file, const std::function<void(const TextSi
     block.clear();
   });
   if (!partial.write(block) || !partial.move_to(file)) fail(file, errno);
+}
+
+void write_file_by_name(const fs::path& file, const std::function<void(const fs::path& hidden)>& produce) {
+  PartialFile partial(file);
+  produce(partial.path());
+  if (!partial.move_to(file)) fail(file, errno);
+}
+
+void remove_partial_files(const fs::path& folder) {
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool has_number = name.size() > 1 && name[0] == '.' && name[1] >= '0' && name[1] <= '9';
+    if (has_number && entry.path().extension() == k_partial_extension) left.push_back(entry.path());
+  }
+  for (const fs::path& file : left) fs::remove(file);
 }
 
 void expect_own_file(const fs::path& file, const fs::path& witness) {

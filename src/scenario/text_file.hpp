@@ -54,6 +54,16 @@ void write_text_file(const std::filesystem::path& file, std::string_view text);
 using TextSink = std::function<void(std::string_view part)>;
 void write_text_file(const std::filesystem::path& file, const std::function<void(const TextSink&)>& produce);
 
+/// Writes a file by a library that opens it by its name, completely or not at all.
+/// @param produce  writes the file under the hidden name that it gets, in the same folder, where an empty file is
+/// @throws std::runtime_error naming the file and why it cannot be written, and what `produce` throws
+void write_file_by_name(const std::filesystem::path& file,
+                        const std::function<void(const std::filesystem::path& hidden)>& produce);
+
+/// Removes the hidden files that processes have left in a folder because they were killed while they wrote. No other
+/// process may write there.
+void remove_partial_files(const std::filesystem::path& folder);
+
 /// Refuses to replace a file that the program has not written.
 /// @param witness  the file itself, or one that the program writes beside it, whose first line shows who wrote it
 /// @throws std::runtime_error if the file exists, and the witness is not the program's or does not exist
