@@ -18,6 +18,10 @@ _monograin() {
     mapfile -t COMPREPLY < <(compgen -W "$(monograin models 2>/dev/null | awk 'NF == 0 { exit } { print $1 }')" -- "$current")
     return
   fi
+  if [[ ${COMP_WORDS[1]} == sweep && $previous == --format ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "csv hdf5" -- "$current")
+    return
+  fi
   if [[ ${COMP_WORDS[1]} == export ]] && ((COMP_CWORD == 2)); then
     mapfile -t COMPREPLY < <(compgen -W "lammps table --help" -- "$current")
     return
@@ -41,7 +45,7 @@ _monograin() {
       [[ ${COMP_WORDS[2]} == table ]] && options+=" --wall"
       ;;
     continuum) options="--mesh --error --keep --set --output --help" ;;
-    sweep) options="--jobs --shard --design-only --output --quiet --help" ;;
+    sweep) options="--jobs --shard --format --design-only --output --quiet --help" ;;
     sensitivity) options="--jobs --confidence --output --help" ;;
     bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --help" ;;
     stress) options="--time --seed --model --first --scenes --jobs --output --help" ;;

@@ -25,6 +25,7 @@ struct SweepCommandOptions {
   std::string file;
   std::string output;
   std::string shard = "1/1";
+  std::string format;
   int threads = 0;
   bool makes_design_only = false;
   bool is_quiet = false;
@@ -59,7 +60,7 @@ int make_design(const Sweep& sweep, const fs::path& folder) {
   return k_success;
 }
 
-void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, const fs::path& folder) {
+void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds) {
   std::string text = fmt::format("{}: {} runs", sweep.name, outcome.runs_now);
   if (outcome.runs_now > 0) {
     text += fmt::format(" in {:.3g} s ({:.4g} runs/s)", seconds, static_cast<double>(outcome.runs_now) / seconds);
@@ -71,26 +72,28 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds, con
   if (outcome.runs_before > 0) text += fmt::format(", {} were there already", outcome.runs_before);
   text += outcome.runs_missing > 0
               ? fmt::format("; {} of {} are left to other shards", outcome.runs_missing, sweep.runs.size())
-              : fmt::format(" -> {}", (folder / "results.csv").string());
+              : fmt::format(" -> {}", outcome.results.string());
   say("{}\n", text);
 }
 
 /// Makes the runs of a sweep that are still missing, as far as they belong to the shard.
+/// @param options  without progress
 /// @return number of runs that are then still missing
-std::size_t run_all(const Sweep& plan, const fs::path& folder, int threads, SweepShard shard, bool is_quiet = false) {
+std::size_t run_all(const Sweep& plan, SweepOptions options, bool is_quiet = false) {
   const auto start = std::chrono::steady_clock::now();
   const SweepOutcome outcome = [&] {
     ProgressBar bar("runs");
-    return run_sweep(plan, {.folder = folder, .threads = threads, .shard = shard, .progress = [&](auto done, auto of) {
-                              if (!is_quiet) bar.show(done, of);
-                            }});
+    options.progress = [&](std::size_t done, std::size_t of) {
+      if (!is_quiet) bar.show(done, of);
+    };
+    return run_sweep(plan, options);
   }();
   if (is_quiet && outcome.runs_ended_early > 0) {
     say("warning: {}: {} of {} runs refused, stopped or failed (columns status and reason)\n", plan.name,
         outcome.runs_ended_early, outcome.runs_now);
   }
   if (is_quiet) return outcome.runs_missing;
-  report(plan, outcome, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), folder);
+  report(plan, outcome, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return outcome.runs_missing;
 }
 
@@ -103,7 +106,12 @@ int sweep(const SweepCommandOptions& options) {
     say("{}: {} points of the design do not meet the constraints\n", plan.name, plan.left_out);
   }
   if (options.makes_design_only) return make_design(plan, folder);
-  if (run_all(plan, folder, options.threads, shard, options.is_quiet) > 0 || !plan.bands) return k_success;
+  const SweepOptions runs{.folder = folder,
+                          .threads = options.threads,
+                          .shard = shard,
+                          .progress = {},
+                          .format = results_format(options.format)};
+  if (run_all(plan, runs, options.is_quiet) > 0 || !plan.bands) return k_success;
   const std::string no_figure = write_bands(plan, bands_of(plan, folder), folder);
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   if (!options.is_quiet) say("{}: bands -> {}\n", plan.name, (folder / "bands.csv").string());
@@ -126,7 +134,7 @@ int sensitivity(const SensitivityOptions& options) {
     throw UsageError(fmt::format("{}: {}", options.file, why_not));
   }
   const fs::path folder = folder_of(plan, options.output);
-  run_all(plan, folder, options.threads, {});
+  run_all(plan, {.folder = folder, .threads = options.threads, .shard = {}, .progress = {}});
   const std::vector<ResultSensitivity> found = sensitivities_of(plan, folder, options.confidence);
   const std::string no_figure = write_sensitivities(plan, found, folder);
   print_data("{}", sensitivity_text(plan, found));
@@ -150,6 +158,11 @@ void add_sweep_command(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 1024));
   command->add_option("--shard", options->shard, "Do every n-th run only, from the i-th; the last shard to end merges")
       ->type_name("i/n");
+  command
+      ->add_option("--format", options->format,
+                   "Format of the results, csv or hdf5 [that of results that are there, else csv]")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember(k_results_formats));
   command->add_flag("--design-only", options->makes_design_only,
                     "Write the runs to design.csv and print the criterion psi; run nothing");
   command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");

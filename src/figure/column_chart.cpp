@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view k_results = "results.csv";
+constexpr std::string_view k_history = "history.csv";
 /// Columns of a sweep's results before and after those of its keys.
 constexpr std::string_view k_before_keys = "run";
 constexpr std::string_view k_after_keys = "status";
@@ -155,14 +155,17 @@ void add_event(std::vector<ChartSeries>& series, std::string_view event, double 
 
 bool is_sweep(const fs::path& path) {
   std::error_code ignored;
-  if (!fs::is_directory(path, ignored)) return path.filename() == k_results;
-  return fs::exists(path / k_results, ignored) && !fs::exists(path / "history.csv", ignored);
+  if (!fs::is_directory(path, ignored))
+    return std::ranges::find(k_results_files, path.filename()) != k_results_files.end();
+  return recorded_table(path).filename() != k_history;
 }
 
 fs::path recorded_table(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) return path;
-  return path / (is_sweep(path) ? k_results : "history.csv");
+  const auto is_there = [&](std::string_view name) { return fs::exists(path / name, ignored); };
+  const auto results = std::ranges::find_if(k_results_files, is_there);
+  return path / (results == k_results_files.end() || is_there(k_history) ? k_history : *results);
 }
 
 ColumnChart column_chart(const std::vector<fs::path>& paths, const ColumnChoice& choice) {

@@ -11,7 +11,7 @@
 
 #include "catalogue.hpp"
 #include "figure/figure.hpp"
-#include "history/table.hpp"
+#include "history/table_file.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::figure {
@@ -207,7 +207,7 @@ void join_contacts(std::vector<RunCurves>& runs) {
 
 Table read_table(const fs::path& file) {
   try {
-    return read_csv(file, FileKind::regular);
+    return read_table_file(file, FileKind::regular);
   } catch (const std::runtime_error& fault) {
     throw FigureError(fault.what());
   }

@@ -12,6 +12,7 @@
 
 #include "cli/command_test.hpp"
 #include "history/table.hpp"
+#include "support/refusal.hpp"
 
 namespace monograin::sweep_command_test {
 namespace {
@@ -208,6 +209,81 @@ TEST_F(SweepCommand, WarnsOfRunsThatEndedBeforeTheirPrograms) {
   write_text(path("indices.toml"), deep);
   EXPECT_EQ(monograin("sensitivity indices.toml").code, 0) << text("stderr.txt");
   EXPECT_NE(text("stderr.txt").find("runs ended before their programs did"), std::string::npos) << text("stderr.txt");
+}
+
+TEST_F(SweepCommand, WritesHdf5ThatEveryCommandReads) {
+  write_text(path("indices.toml"), index_file());
+  const Outcome swept = monograin("sweep indices.toml --format hdf5");
+  if (contains(swept.err, "HDF5")) GTEST_SKIP() << swept.err;
+  ASSERT_EQ(swept.code, 0) << swept.err;
+  EXPECT_TRUE(contains(swept.err, "80 runs in ")) << swept.err;
+  EXPECT_TRUE(contains(swept.err, " -> runs/indices/results.h5\n")) << swept.err;
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("runs/indices")), {}), 1) << "results.h5 alone";
+  ASSERT_EQ(monograin("plot runs/indices -o hdf5.svg").code, 0) << text("stderr.txt");
+  const Outcome analysed = monograin("sensitivity indices.toml");
+  ASSERT_EQ(analysed.code, 0) << analysed.err;
+  EXPECT_TRUE(contains(analysed.err, "80 were there already -> runs/indices/results.h5")) << analysed.err;
+
+  ASSERT_EQ(monograin("sensitivity indices.toml -o csv").code, 0) << text("stderr.txt");
+  EXPECT_EQ(analysed.out, text("stdout.txt"));
+  ASSERT_EQ(monograin("plot csv -o csv.svg").code, 0) << text("stderr.txt");
+  EXPECT_EQ(text("hdf5.dat"), text("csv.dat"));
+  const Outcome converted = monograin("sweep indices.toml --format csv");
+  EXPECT_TRUE(contains(converted.err, "0 runs, 80 were there already -> runs/indices/results.csv")) << converted.err;
+  EXPECT_EQ(text("runs/indices/results.csv"), text("csv/results.csv"));
+}
+
+TEST_F(SweepCommand, RefusesAFormatThatItDoesNotHave) {
+  const Outcome refused = monograin("sweep many.toml --format xml");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_TRUE(
+      contains(refused.err, "--format = xml is not what it takes; expected: Format of the results, csv or hdf5"))
+      << refused.err;
+  EXPECT_FALSE(fs::exists(path("runs")));
+}
+
+TEST_F(SweepCommand, SaysWhatToInstallWhereHdf5CannotBeLoaded) {
+  // Files that are no library stand before that of the system, whatever its version.
+  const Outcome refused = shell(
+      "mkdir lib; for v in $(seq 100 400); do : > lib/libhdf5_serial.so.$v; : > lib/libhdf5.so.$v; done\n"
+      "LD_LIBRARY_PATH=lib monograin sweep many.toml --format hdf5");
+  if (contains(refused.err, "this build of monograin has no HDF5")) GTEST_SKIP() << refused.err;
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_TRUE(contains(refused.err, "HDF5 cannot be used: ")) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "apt-get install libhdf5-103-1), or use the format csv\n")) << refused.err;
+  EXPECT_FALSE(fs::exists(path("runs"))) << "nothing was run";
+}
+
+TEST_F(SweepCommand, LeavesNoPartOfResultsThatItCannotWrite) {
+  const std::string indices = index_file();
+  write_text(path("few.toml"), "design = \"lhs\"\nruns = 5\n" + indices.substr(indices.find("[vary]")));
+  if (contains(monograin("sweep few.toml --format hdf5 -o whole").err, "HDF5")) GTEST_SKIP() << text("stderr.txt");
+  // Larger than the journal, smaller than the results.
+  const Outcome full = shell("trap '' XFSZ; ulimit -f 8; monograin sweep few.toml --format hdf5 -o out");
+  EXPECT_EQ(full.code, 2);
+  EXPECT_TRUE(contains(full.err, "out/results.h5: cannot be written: File too large")) << full.err;
+  EXPECT_EQ(full.err.find("HDF5-DIAG"), std::string::npos) << full.err;
+  EXPECT_TRUE(fs::exists(path("out/sweep.journal")));
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), {}), 1);
+  const Outcome again = monograin("sweep few.toml --format hdf5 -o out");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_TRUE(contains(again.err, "0 runs, 5 were there already -> out/results.h5")) << again.err;
+  EXPECT_EQ(text("out/results.h5"), text("whole/results.h5"));
+}
+
+TEST_F(SweepCommand, WritesHdf5AfterBeingKilledAtAnyMoment) {
+  const auto start = std::chrono::steady_clock::now();
+  if (contains(monograin("sweep many.toml --format hdf5 -o whole").err, "HDF5")) GTEST_SKIP() << text("stderr.txt");
+  const std::chrono::duration<double, std::micro> whole = std::chrono::steady_clock::now() - start;
+  std::vector<std::string> arguments{"sweep", "many.toml", "--format", "hdf5", "-o", "killed"};
+  // Also while the results are written, at the end.
+  for (const double share : {0.3, 0.7, 0.8, 0.85, 0.9, 0.95}) {
+    start_and_kill(arguments, std::chrono::microseconds(static_cast<long>(share * whole.count())));
+    EXPECT_TRUE(!fs::exists(path("killed/results.h5")) || text("killed/results.h5") == text("whole/results.h5"));
+  }
+  ASSERT_EQ(monograin("sweep many.toml --format hdf5 -o killed").code, 0) << text("stderr.txt");
+  EXPECT_EQ(text("killed/results.h5"), text("whole/results.h5"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("killed")), {}), 2) << "histories and results";
 }
 
 TEST_F(SweepCommand, RunsEveryReadySweep) {

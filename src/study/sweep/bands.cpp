@@ -244,7 +244,7 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
   const std::vector<RunCurves> runs = read_curves(sweep, folder, bands);
   const std::map<std::size_t, Abscissae> ranges = ranges_of(runs);
   if (ranges.empty()) {
-    throw std::runtime_error(fmt::format("{}: no run has a history; the reasons are in results.csv", folder.string()));
+    throw std::runtime_error(fmt::format("{}: no run has a history; the reasons are in the results", folder.string()));
   }
   for (const auto& [step, range] : ranges) {
     StepBands& own = bands.steps.emplace_back(StepBands{.step = step, .x = abscissae_of(range, request.points)});

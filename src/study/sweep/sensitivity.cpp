@@ -11,10 +11,11 @@
 #include <utility>
 
 #include "figure/chart.hpp"
+#include "figure/column_chart.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/page.hpp"
 #include "history/run.hpp"
-#include "history/table.hpp"
+#include "history/table_file.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "study/formula/expression.hpp"
@@ -163,7 +164,7 @@ using Style = figure::ChartSeries::Style;
   std::vector<std::string> warnings;
   if (found.samples() != sample_count(sweep)) {
     warnings.push_back(
-        fmt::format("{}: {} of {} samples count; of the others a run has no value, see its reason in results.csv: this "
+        fmt::format("{}: {} of {} samples count; of the others a run has no value, see its reason in the results: this "
                     "can bias the result",
                     found.result, found.samples(), sample_count(sweep)));
   }
@@ -181,7 +182,7 @@ using Style = figure::ChartSeries::Style;
   if (ended_early > 0) {
     warnings.push_back(
         fmt::format("{}: {} of {} runs ended before their programs did, and count with what they had reached; see "
-                    "their reasons in results.csv: this can bias the result",
+                    "their reasons in the results: this can bias the result",
                     found.result, ended_early, values.size()));
   }
   if (lowest == highest) {
@@ -211,7 +212,7 @@ std::string why_no_sensitivities(const Sweep& sweep) {
 }
 
 std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const fs::path& folder, double confidence) {
-  const Table results = read_csv(folder / "results.csv");
+  const Table results = read_table_file(figure::recorded_table(folder));
   std::vector<ResultSensitivity> found;
   for (const std::string& formula : sweep.results) {
     const std::vector<double> values = values_of(formula, results);

@@ -11,7 +11,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -34,11 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* k_results = "results.csv";
 constexpr const char* k_journal_extension = ".journal";
-constexpr std::string_view k_program_line = "# program: monograin ";
-constexpr const char* k_digest_line = "# sweep_digest: ";
-constexpr std::string_view k_rows_digest_line = "# rows_digest: ";
 constexpr const char* k_refused = "refused";  // status of a run whose scenario has faults
 /// Tables that are made from the results, each with a figure of the same name.
 constexpr std::array k_made_from_results{k_bands_file, k_sensitivities_file};
@@ -192,28 +187,6 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
   return cells;
 }
 
-/// True if a folder has the results of this sweep.
-/// @throws std::runtime_error if it has results, of this or another sweep, that were changed after they were written
-[[nodiscard]] bool has_results(const Sweep& sweep, const fs::path& folder) {
-  const fs::path file = folder / k_results;
-  std::ifstream in(file);
-  std::string line;
-  bool is_own = false;
-  std::string digest;
-  while (in.peek() == '#' && std::getline(in, line)) {
-    is_own |= line == k_digest_line + sweep.digest;
-    if (line.starts_with(k_rows_digest_line)) digest = line.substr(k_rows_digest_line.size(), LinesDigest::k_digits);
-  }
-  if (digest.empty() && !is_own) return false;
-  LinesDigest of_rows;
-  while (std::getline(in, line)) of_rows.add(line);
-  if (of_rows.word() == digest) return is_own;
-  throw std::runtime_error(
-      fmt::format("{}: is damaged or edited: its rows do not match its rows_digest; remove or rename it to run the "
-                  "sweep again",
-                  file.string()));
-}
-
 // --- the folder
 
 [[nodiscard]] fs::path journal_file(const SweepOptions& options) {
@@ -231,12 +204,13 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
   return files;
 }
 
-void prepare(const fs::path& folder) {
+/// @param results  the file that is to be written
+void prepare(const fs::path& folder, const fs::path& results) {
   if (fs::exists(folder / k_run_marker) || fs::exists(folder / k_written_files)) {
     throw std::runtime_error(
         fmt::format("{}: holds the result of another command; choose another folder", folder.string()));
   }
-  expect_own_file(folder / k_results, folder / k_results);
+  expect_own_file(results, results);
   for (const char* name : k_made_from_results) {
     expect_own_file(folder / name, folder / name);
     figure::expect_own_figure((folder / name).replace_extension(".svg"));
@@ -259,6 +233,7 @@ void remove_leftovers(const Sweep& sweep, const fs::path& folder) {
   }
   const fs::path histories = folder / "histories";
   if (!fs::is_directory(histories)) return;
+  remove_partial_files(histories);
   std::vector<fs::path> left;
   for (const auto& entry : fs::directory_iterator(histories)) {
     const std::string name = entry.path().stem().string();
@@ -271,7 +246,7 @@ void remove_leftovers(const Sweep& sweep, const fs::path& folder) {
   if (!sweep.keeps_histories && fs::is_empty(histories)) fs::remove(histories);
 }
 
-/// Lock of the process that merges a folder's journals into results.csv, so that no two do.
+/// Lock of the process that writes the results of a folder, so that no two do.
 class FolderLock {
  public:
   explicit FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
@@ -305,33 +280,12 @@ class Rows {
     return static_cast<std::size_t>(std::ranges::count(places_, true, &Place::is_there));
   }
 
-  /// Writes the results. All runs have to be finished.
-  void write(const TextSink& sink) {
-    const std::vector<std::string> columns = all_columns();
-    LinesDigest digest;
-    for_each_line(columns, [&digest](std::string_view line) { digest.add(line); });
-    sink(fmt::format("{}{}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n{}{}\n", k_program_line, version(),
-                     sweep_.name, k_digest_line, sweep_.digest, sweep_.design, sweep_.scenario_name, k_rows_digest_line,
-                     digest.word()));
-    for_each_line(columns, [&](std::string_view line) {
-      sink(line);
-      sink("\n");
-    });
-  }
-
- private:
-  struct Place {
-    bool is_there = false;
-    std::uint32_t record = 0;
-    std::uint64_t begin = 0;  ///< of the row in its journal
-  };
-
-  /// Calls a function with the line of headings, and with that of each run.
-  template <class Function>
-  void for_each_line(const std::vector<std::string>& columns, Function&& function) {
+  /// Passes the line of headings and then that of each run to a sink. All runs have to be finished.
+  void for_each_line(const TextSink& sink) {
+    if (columns_.empty()) columns_ = all_columns();
     std::string line = leading_headings(sweep_);
-    for (const std::string& column : columns) (line += ',') += column;
-    function(line);
+    for (const std::string& column : columns_) (line += ',') += column;
+    sink(line);
     std::unordered_map<std::string, std::vector<std::size_t>> targets;  // columns of each layout's cells
     std::vector<std::string_view> cells;
     for (std::size_t run = 0; run < places_.size(); ++run) {
@@ -340,17 +294,24 @@ class Rows {
       const auto [target, is_new] = targets.try_emplace(layout);
       if (is_new) {
         for (const std::string_view heading : split(layout)) {
-          target->second.push_back(static_cast<std::size_t>(std::ranges::find(columns, heading) - columns.begin()));
+          target->second.push_back(static_cast<std::size_t>(std::ranges::find(columns_, heading) - columns_.begin()));
         }
       }
-      cells.assign(columns.size(), "nan");
+      cells.assign(columns_.size(), "nan");
       const std::vector<std::string_view> own = split(row.cells);
       for (std::size_t k = 0; k < own.size(); ++k) cells[target->second[k]] = own[k];
       line = fmt::format("{}{},{}", leading_cells(sweep_, run), row.status, row.reason);
       for (const std::string_view cell : cells) (line += ',') += cell;
-      function(line);
+      sink(line);
     }
   }
+
+ private:
+  struct Place {
+    bool is_there = false;
+    std::uint32_t record = 0;
+    std::uint64_t begin = 0;  ///< of the row in its journal
+  };
 
   [[nodiscard]] SweepRow row_of(std::size_t run) { return records_[places_[run].record].row(places_[run].begin); }
   [[nodiscard]] const std::string& layout_of(std::size_t run, const SweepRow& row) const {
@@ -376,7 +337,8 @@ class Rows {
 
   const Sweep& sweep_;
   std::vector<SweepRecord> records_;
-  std::vector<Place> places_;  ///< of every run
+  std::vector<Place> places_;           ///< of every run
+  std::vector<std::string> columns_{};  ///< of all runs; empty before the first line
 };
 
 /// @return number of runs that were refused, stopped or failed
@@ -407,9 +369,16 @@ fs::path folder_of(const Sweep& sweep, const fs::path& chosen) {
 }
 
 SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
-  prepare(options.folder);
-  if (has_results(sweep, options.folder)) return {.runs_before = sweep.runs.size()};
+  const ResultsFormat format = options.format.value_or(ResultsFormat::csv);
+  if (format == ResultsFormat::hdf5) expect_hdf5();
+  prepare(options.folder, results_file(options.folder, format));
   SweepOutcome outcome;
+  {
+    const FolderLock lock(options.folder);
+    if (const auto found = found_results(sweep, options.folder, options.format)) {
+      return {.runs_before = sweep.runs.size(), .results = *found};
+    }
+  }
   {
     SweepJournal journal(journal_file(options), sweep.digest);
     std::vector<std::size_t> runs;
@@ -422,14 +391,17 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
     outcome.runs_now = runs.size();
   }
   const FolderLock lock(options.folder);
-  if (has_results(sweep, options.folder)) return outcome;  // another shard has written them
+  if (const auto found = found_results(sweep, options.folder, options.format)) {  // another shard has written them
+    outcome.results = *found;
+    return outcome;
+  }
   Rows rows(sweep, options.folder);
   outcome.runs_missing = sweep.runs.size() - rows.count();
   if (outcome.runs_missing > 0) return outcome;
+  outcome.results =
+      write_results(sweep, options.folder, format, [&rows](const TextSink& sink) { rows.for_each_line(sink); });
+  remove_other_results(outcome.results);
   remove_leftovers(sweep, options.folder);
-  write_text_file(options.folder / k_results, [&rows](const TextSink& sink) { rows.write(sink); });
-  sync_to_disk(options.folder / k_results);
-  sync_to_disk(options.folder);
   for (const fs::path& file : journals_in(options.folder)) fs::remove(file);
   return outcome;
 }

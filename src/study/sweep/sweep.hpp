@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "study/sweep/sweep_file.hpp"
+#include "study/sweep/sweep_results.hpp"
 
 namespace monograin {
 
@@ -21,6 +23,9 @@ struct SweepOptions {
   SweepShard shard;
   /// Called after every run with how many of this process's runs are done, and how many there are; one call at a time.
   std::function<void(std::size_t done, std::size_t of)> progress;
+  /// Format of the results; none: that of the results that are there, CSV if there are none. Results of this sweep in
+  /// another format are converted, and stay.
+  std::optional<ResultsFormat> format{};
 };
 
 /// Progress of a sweep.
@@ -28,20 +33,21 @@ struct SweepOutcome {
   std::size_t runs_before = 0;       ///< runs of the whole sweep that were finished before
   std::size_t runs_now = 0;          ///< done by this call
   std::size_t runs_ended_early = 0;  ///< of those done by this call: refused, stopped or failed
-  std::size_t runs_missing = 0;      ///< left to other shards; 0: results.csv is complete
+  std::size_t runs_missing = 0;      ///< left to other shards; 0: the results are complete
+  std::filesystem::path results{};   ///< their file; empty while runs are missing
 };
 
 /// Folder of the results: the one chosen, or else runs/NAME.
 [[nodiscard]] std::filesystem::path folder_of(const Sweep& sweep, const std::filesystem::path& chosen);
 
-/// Runs the missing runs of a sweep, or of its shard, and writes results.csv once all runs of the sweep are finished.
+/// Runs the missing runs of a sweep, or of its shard, and writes the results once all runs of the sweep are finished.
 ///
 /// Finished runs are kept in journals, one for each shard: NAME.journal in the folder. A run that any journal holds is
-/// not repeated. When the journals together hold all runs, they become results.csv and are removed. The file does not
+/// not repeated. When the journals together hold all runs, they become the results and are removed. The file does not
 /// depend on the number of threads, shards and interruptions. A run that is refused, stops or fails is a row with a
 /// reason.
-/// @throws std::runtime_error if the folder holds something else, or a results.csv that was changed after it was
-///         written, or cannot be written
+/// @throws std::runtime_error if the folder holds something else, or results that were changed after they were
+///         written, or cannot be written; before any run, if HDF5 is wanted and cannot be written
 [[nodiscard]] SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options);
 
 }  // namespace monograin

@@ -62,6 +62,7 @@ class SweepReader {
     for (const Factor& factor : factors_) varied.push_back(factor.key);
     std::ranges::move(sweep::columns_of_formulas(reading_, root, varied), std::back_inserter(columns_));
     if (root.has("bands")) bands_ = sweep::bands_in(reading_, root);
+    if (design_ != "table" && design_ != "grid") seed_ = static_cast<std::uint64_t>(root.number("seed").value_or(1.0));
     if (design_ == "table") {
       read_table(root);
     } else if (design_ == "grid") {
@@ -90,6 +91,9 @@ class SweepReader {
             .results = root.texts("results"),
             .bands = bands_ ? std::optional(std::move(bands_->request)) : std::nullopt,
             .doubts = std::move(doubts),
+            .text = std::move(text_),
+            .scenario_text = std::move(scenario_text_),
+            .seed = seed_,
             .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
   }
 
@@ -127,7 +131,7 @@ class SweepReader {
     const std::string name = root.text("scenario");
     if (name.empty()) return;
     const fs::path file = file_.parent_path() / name;
-    const auto [scenario_text, problem] = read_text_file(file, k_largest_text);
+    auto [scenario_text, problem] = read_text_file(file, k_largest_text);
     if (!problem.empty()) {
       faults_.add(root.value_place("scenario"),
                   fmt::format("scenario = \"{}\": {} ({}); expected a scenario file, its path relative to the sweep's "
@@ -145,6 +149,7 @@ class SweepReader {
     scenario_name_ = file.stem().string();
     scenario_folder_ = file.parent_path();
     digested_ += '\n' + scenario_text;
+    scenario_text_ = std::move(scenario_text);
   }
 
   /// Reports an unknown model, without which no key of a material is known.
@@ -405,7 +410,7 @@ class SweepReader {
       };
     }
     try {
-      points_ = maxpro_design(space, runs, static_cast<std::uint64_t>(root.number("seed").value_or(1.0)));
+      points_ = maxpro_design(space, runs, *seed_);
     } catch (const std::domain_error& error) {
       faults_.add(root.value_place(constraints_.empty() ? "runs" : "constraints"), error.what());
       return;
@@ -435,10 +440,9 @@ class SweepReader {
                                                            each, count, sweep::k_most_runs));
     }
     if (faults_.size() > 0) return;
-    const auto seed = static_cast<std::uint64_t>(root.number("seed").value_or(1.0));
-    points_ = design_ == "saltelli" ? saltelli_design(factors_.size(), count, seed)
-              : design_ == "morris" ? morris_design(factors_.size(), count, seed)
-                                    : sampled_design(design_, factors_.size(), count, seed);
+    points_ = design_ == "saltelli" ? saltelli_design(factors_.size(), count, *seed_)
+              : design_ == "morris" ? morris_design(factors_.size(), count, *seed_)
+                                    : sampled_design(design_, factors_.size(), count, *seed_);
     std::vector<FactorValue> values(factors_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const std::span<const double> point = points_.point(i);
@@ -653,6 +657,8 @@ class SweepReader {
   toml::table scenario_tree_;
   std::optional<ScenarioTemplate> scenario_;
   std::string scenario_name_;
+  std::string scenario_text_;
+  std::optional<std::uint64_t> seed_;
   fs::path scenario_folder_;
   std::vector<std::string> models_;  ///< models over which the sweep varies
   std::vector<Factor> factors_;
@@ -677,18 +683,6 @@ Sweep parse_sweep(NamedText source) { return SweepReader(std::move(source)).read
 
 CheckedScenario scenario_of(const Sweep& sweep, std::size_t run) {
   return scenario_with(sweep.scenario, sweep.factors, sweep.runs[run]);
-}
-
-std::string design_text(const Sweep& sweep) {
-  std::vector<std::string> cells;
-  for (const SweepFactor& factor : sweep.factors) cells.push_back(factor.heading());
-  std::string text = fmt::format("# program: monograin {}\n# sweep: {}\n# design: {}\n{}\n", version(), sweep.name,
-                                 sweep.design, fmt::join(cells, ","));
-  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
-    std::ranges::transform(sweep.runs[run], cells.begin(), cell_of);
-    text += fmt::format("{}\n", fmt::join(cells, ","));
-  }
-  return text;
 }
 
 }  // namespace monograin

@@ -1,6 +1,7 @@
 /// Sweep files: one scenario, the keys that are varied, and the runs this makes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -34,7 +35,10 @@ struct Sweep {
   std::vector<std::string> columns;  ///< of the results, e.g. max.axial.force; empty: all final and largest values
   std::vector<std::string> results;  ///< formulas for which indices are estimated
   std::optional<BandRequest> bands{};
-  std::vector<std::string> doubts{};  ///< values that may not be meant as they are read, a sentence each
+  std::vector<std::string> doubts{};    ///< values that may not be meant as they are read, a sentence each
+  std::string text{};                   ///< of the sweep file
+  std::string scenario_text{};          ///< of the scenario's file; empty: it is a table of the sweep file
+  std::optional<std::uint64_t> seed{};  ///< of a design that is drawn
   std::string digest;  ///< of everything that determines the results: sweep, scenario, tables, program version
 };
 
@@ -49,8 +53,5 @@ struct Sweep {
 /// Scenario of a run.
 /// @throws ScenarioError with every fault of the scenario with these values
 [[nodiscard]] CheckedScenario scenario_of(const Sweep& sweep, std::size_t run);
-
-/// Runs as a CSV table, which `design = "table"` reads back bit by bit.
-[[nodiscard]] std::string design_text(const Sweep& sweep);
 
 }  // namespace monograin

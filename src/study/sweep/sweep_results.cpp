@@ -1,0 +1,199 @@
+#include "study/sweep/sweep_results.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <fstream>
+#include <istream>
+#include <stdexcept>
+#include <string_view>
+
+#include "figure/column_chart.hpp"
+#include "history/run.hpp"
+#include "scenario/words.hpp"
+#include "study/sweep/sweep_journal.hpp"
+
+namespace monograin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view k_digest_line = "# sweep_digest: ";
+constexpr std::string_view k_rows_digest_line = "# rows_digest: ";
+constexpr std::size_t k_least_user_block = 512;  // [bytes], of the format HDF5
+
+/// Lines at the beginning of both formats.
+[[nodiscard]] std::string header_of(const Sweep& sweep, std::string_view rows_digest) {
+  return fmt::format("# program: monograin {}\n# sweep: {}\n{}{}\n# design: {}\n# scenario: {}\n{}{}\n", version(),
+                     sweep.name, k_digest_line, sweep.digest, sweep.design, sweep.scenario_name, k_rows_digest_line,
+                     rows_digest);
+}
+
+/// The digests in the lines at the beginning of a file; empty where there are none.
+struct Digests {
+  std::string sweep{};
+  std::string rows{};  ///< of all that follows these lines
+};
+
+[[nodiscard]] Digests skip_header(std::istream& in) {
+  Digests found;
+  std::string line;
+  while (in.peek() == '#' && std::getline(in, line)) {
+    if (line.starts_with(k_digest_line)) found.sweep = line.substr(k_digest_line.size());
+    if (line.starts_with(k_rows_digest_line)) {
+      found.rows = line.substr(k_rows_digest_line.size(), LinesDigest::k_digits);
+    }
+  }
+  return found;
+}
+
+/// Digest of the lines that are left; a file that is no text has lines between its bytes of that value.
+[[nodiscard]] std::string digest_of_rest(std::istream& in) {
+  LinesDigest digest;
+  for (std::string line; std::getline(in, line);) digest.add(line);
+  return digest.word();
+}
+
+/// True if a file has results of this sweep.
+/// @throws std::runtime_error if it has results, of this or another sweep, that were changed after they were written
+[[nodiscard]] bool has_results(const Sweep& sweep, const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const Digests digests = skip_header(in);
+  const bool is_own = digests.sweep == sweep.digest;
+  if (digests.rows.empty() && !is_own) return false;
+  if (digest_of_rest(in) == digests.rows) return is_own;
+  throw std::runtime_error(
+      fmt::format("{}: is damaged or edited: its rows do not match its rows_digest; remove or rename it to run the "
+                  "sweep again",
+                  file.string()));
+}
+
+void write_as_csv(const Sweep& sweep, const fs::path& file, const TableLines& lines) {
+  LinesDigest digest;
+  lines([&digest](std::string_view line) { digest.add(line); });
+  write_text_file(file, [&](const TextSink& sink) {
+    sink(header_of(sweep, digest.word()));
+    lines([&](std::string_view line) {
+      sink(line);
+      sink("\n");
+    });
+  });
+}
+
+/// Texts that describe a sweep, as attributes of its file.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> attributes_of(const Sweep& sweep) {
+  std::vector<std::pair<std::string, std::string>> attributes{{"program", fmt::format("monograin {}", version())},
+                                                              {"sweep", sweep.name},
+                                                              {"sweep_digest", sweep.digest},
+                                                              {"design", sweep.design}};
+  if (sweep.seed) attributes.emplace_back("seed", fmt::format("{}", *sweep.seed));
+  attributes.emplace_back("sweep_text", sweep.text);
+  attributes.emplace_back("scenario", sweep.scenario_name);
+  if (!sweep.scenario_text.empty()) attributes.emplace_back("scenario_text", sweep.scenario_text);
+  return attributes;
+}
+
+[[nodiscard]] std::string group_of(const Sweep& sweep, const Column& column) {
+  constexpr std::array<std::string_view, 3> k_of_run{"run", "status", "reason"};
+  if (std::ranges::find(k_of_run, column.name) != k_of_run.end()) return {};
+  return std::ranges::find(sweep.factors, column.name, &SweepFactor::key) == sweep.factors.end() ? "outputs" : "inputs";
+}
+
+/// The lines of the header take the part of the file that the format leaves to its user.
+void write_as_hdf5(const Sweep& sweep, const fs::path& file, const TableLines& lines) {
+  const std::size_t length = header_of(sweep, LinesDigest().word()).size();
+  const std::size_t block = std::max(k_least_user_block, std::bit_ceil(length));
+  write_file_by_name(file, [&](const fs::path& hidden) {
+    write_hdf5(hidden,
+               {.shown_as = file,
+                .free_bytes = block,
+                .attributes = attributes_of(sweep),
+                .group_of = [&sweep](const Column& column) { return group_of(sweep, column); }},
+               lines);
+    std::fstream stream(hidden, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(static_cast<std::streamoff>(length));
+    stream << std::string(block - length, '\n');
+    stream.seekg(static_cast<std::streamoff>(length));
+    const std::string digest = digest_of_rest(stream);
+    stream.clear();
+    stream.seekp(0);
+    stream << header_of(sweep, digest) << std::flush;
+    if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
+  });
+}
+
+/// The lines of a file of results.
+[[nodiscard]] TableLines lines_of(const fs::path& file) {
+  if (file.extension() != k_hdf5_extension) {
+    return [file](const TextSink& sink) {
+      std::ifstream in(file, std::ios::binary);
+      static_cast<void>(skip_header(in));
+      for (std::string line; std::getline(in, line);) sink(line);
+    };
+  }
+  Table table = read_hdf5(file);
+  table.header.clear();
+  return [table = std::move(table)](const TextSink& sink) {
+    for_each_csv_part(table, [&sink](std::string_view part) { sink(part.substr(0, part.size() - 1)); });
+  };
+}
+
+}  // namespace
+
+std::optional<ResultsFormat> results_format(std::string_view name) {
+  if (name.empty()) return std::nullopt;
+  const auto found = std::ranges::find(k_results_formats, name);
+  if (found == k_results_formats.end()) {
+    throw std::invalid_argument(
+        fmt::format("format = {}: expected one of {}", shown(name), fmt::join(k_results_formats, ", ")));
+  }
+  return static_cast<ResultsFormat>(found - k_results_formats.begin());
+}
+
+fs::path results_file(const fs::path& folder, ResultsFormat format) {
+  return folder / figure::k_results_files.at(static_cast<std::size_t>(format));
+}
+
+std::optional<fs::path> found_results(const Sweep& sweep, const fs::path& folder, std::optional<ResultsFormat> wanted) {
+  std::optional<fs::path> found;
+  for (const ResultsFormat format : {ResultsFormat::csv, ResultsFormat::hdf5}) {
+    const fs::path file = results_file(folder, format);
+    if (has_results(sweep, file) && (!found || format == wanted)) found = file;
+  }
+  if (!found || !wanted || *found == results_file(folder, *wanted)) return found;
+  return write_results(sweep, folder, *wanted, lines_of(*found));
+}
+
+fs::path write_results(const Sweep& sweep, const fs::path& folder, ResultsFormat format, const TableLines& lines) {
+  const fs::path file = results_file(folder, format);
+  remove_partial_files(folder);
+  (format == ResultsFormat::csv ? write_as_csv : write_as_hdf5)(sweep, file, lines);
+  sync_to_disk(file);
+  sync_to_disk(folder);
+  return file;
+}
+
+void remove_other_results(const fs::path& results) {
+  for (const std::string_view name : figure::k_results_files) {
+    const fs::path file = results.parent_path() / name;
+    std::ifstream in(file, std::ios::binary);
+    if (file != results && !skip_header(in).sweep.empty()) fs::remove(file);
+  }
+}
+
+std::string design_text(const Sweep& sweep) {
+  std::vector<std::string> cells;
+  for (const SweepFactor& factor : sweep.factors) cells.push_back(factor.heading());
+  std::string text = fmt::format("# program: monograin {}\n# sweep: {}\n# design: {}\n{}\n", version(), sweep.name,
+                                 sweep.design, fmt::join(cells, ","));
+  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
+    std::ranges::transform(sweep.runs[run], cells.begin(), cell_of);
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return text;
+}
+
+}  // namespace monograin
