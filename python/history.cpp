@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "history/table_file.hpp"
 
 namespace monograin::python {
 namespace {
@@ -99,6 +100,7 @@ void add_history(py::module_& module) {
       .def("labels", [](const History& history, const std::string& name) { return column_of(history, name).labels; });
   module.def("table_of", &table_of);
   module.def("read_csv", [](const std::string& file) { return history_of(read_csv(file)); });
+  module.def("read_hdf5", [](const std::string& file) { return history_of(read_hdf5(file)); });
 }
 
 }  // namespace monograin::python

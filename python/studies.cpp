@@ -22,11 +22,15 @@ using Found = std::tuple<Table, std::vector<std::string>, std::string>;
 
 /// @return the results; None if runs of other shards are missing
 Found<std::optional<History>> sweep(const std::string& file, const std::optional<std::string>& text,
-                                    const std::string& folder, int threads, int shard, int shard_count) {
+                                    const std::string& folder, int threads, int shard, int shard_count,
+                                    const std::string& format) {
   study::SweepResult found = run_interruptibly([&](const auto& stop) {
-    return study::sweep(
-        {file, text, {}},
-        {.folder = folder, .threads = threads, .shard = shard, .shard_count = shard_count, .stop = stop});
+    return study::sweep({file, text, {}}, {.folder = folder,
+                                           .threads = threads,
+                                           .shard = shard,
+                                           .shard_count = shard_count,
+                                           .format = format,
+                                           .stop = stop});
   });
   return {found.missing > 0 ? std::nullopt : std::optional(std::move(found.results)), std::move(found.warnings),
           std::move(found.no_figure)};

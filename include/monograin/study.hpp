@@ -42,6 +42,9 @@ struct SweepOptions {
   int threads = 0;      ///< number of threads; 0: one for each core
   int shard = 1;        ///< from 1 to shard_count: only every shard_count-th run from this one on is done
   int shard_count = 1;  ///< number of processes that share the folder
+  /// Format of the results, `csv` or `hdf5`; empty: that of results that are there, else `csv`. Results of the same
+  /// sweep in another format are converted.
+  std::string format{};
   /// Asked after each run, by one thread at a time. Returning true ends the sweep by RunInterrupted; complete runs stay
   /// in the folder, and the next call does the others. An empty function never ends it.
   std::function<bool()> stop{};
@@ -51,8 +54,8 @@ struct SweepResult {
   std::filesystem::path folder;
   std::size_t missing = 0;   ///< number of runs that other shards have yet to do
   std::size_t left_out = 0;  ///< number of points of the design that do not meet its constraints
-  /// Content of results.csv, once no run is missing: a row for each run with its keys, `status` and `reason`, and the
-  /// final (`end.axial.force`) and largest (`max.axial.force`) value of every column, in SI units.
+  /// Content of results.csv or results.h5, once no run is missing: a row for each run with its keys, `status` and
+  /// `reason`, and the final (`end.axial.force`) and largest (`max.axial.force`) value of every column, in SI units.
   History results;
   std::vector<std::string> warnings;  ///< values that may not be meant as they are read, a sentence each
   std::string no_figure;  ///< why the folder has no figure of the bands; empty: it has one, or none was requested
@@ -60,11 +63,11 @@ struct SweepResult {
 
 /// Runs a sweep, as `monograin sweep` does. Runs that are in the folder already are not repeated.
 /// @throws ScenarioError with all faults of the sweep and its scenario
-/// @throws std::invalid_argument for a source without file and text or with data, negative threads, or a shard that is
-///         not from 1 to the number of shards
+/// @throws std::invalid_argument for a source without file and text or with data, negative threads, another format, or
+///         a shard that is not from 1 to the number of shards
 /// @throws std::runtime_error before any run if the folder holds a run, a calibration or a plan, or a file of the user
-///         with the name of one to write, or cannot be written; after the runs for bands of columns that the histories
-///         do not have
+///         with the name of one to write, or cannot be written, or if this build or this machine has no HDF5; after the
+///         runs for bands of columns that the histories do not have
 /// @throws RunInterrupted if the options end the sweep
 [[nodiscard]] SweepResult sweep(const Source& source, const SweepOptions& options = {});
 

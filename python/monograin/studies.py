@@ -26,7 +26,12 @@ Curves = Union[Run, Table, Path, Mapping[str, Any], DataFrame]
 
 @explained
 def sweep(
-    source: Source, folder: Optional[Path] = None, *, threads: int = 0, shard: tuple[int, int] = (1, 1)
+    source: Source,
+    folder: Optional[Path] = None,
+    *,
+    threads: int = 0,
+    shard: tuple[int, int] = (1, 1),
+    format: Optional[str] = None,
 ) -> Optional[Table]:
     """Runs a sweep on several threads, as ``monograin sweep`` does.
 
@@ -40,19 +45,25 @@ def sweep(
         threads: number of threads; 0: one for each core.
         shard: (i, n) to do only every n-th run, from the i-th on. The last of n processes that share a folder merges
             the results.
+        format: ``"csv"`` or ``"hdf5"``, the format of the results; if None, that of results that are there, else CSV.
+            Results of the same sweep in another format are converted.
 
     Returns:
         A row for each run with its keys, ``status``, ``reason``, and the final (``end.axial.force``) and largest
         (``max.axial.force``) value of every column. None if runs of other shards are missing. The table is
-        ``results.csv`` in the folder. If the file has ``[bands]``, percentiles of the histories are ``bands.csv``.
+        ``results.csv`` or ``results.h5`` in the folder. If the file has ``[bands]``, percentiles of the histories are
+        ``bands.csv``.
 
     Raises:
         ScenarioError: with every fault of the sweep and its scenario.
+        ValueError: for another format.
         RuntimeError: before any run, if the folder holds a run, a calibration or a plan, or a file of yours with the name of
-            one to write, or cannot be written; after the runs, for bands of columns that the histories lack.
+            one to write, or cannot be written, or if HDF5 cannot be used; after the runs, for bands of columns that the
+            histories lack.
         KeyboardInterrupt: on Ctrl-C. Complete runs stay in the folder, and the next call does the others.
     """
-    results, remarks, no_figure = _core.sweep(*_named_text(source, "sweep.toml"), _folder(folder), threads, *shard)
+    named_text = _named_text(source, "sweep.toml")
+    results, remarks, no_figure = _core.sweep(*named_text, _folder(folder), threads, *shard, format or "")
     _warn(remarks, no_figure)
     return None if results is None else Table(results)
 

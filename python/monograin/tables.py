@@ -44,10 +44,18 @@ class Table:
             FileNotFoundError: if there is no such file.
             RuntimeError: if the file is not a table; the message has the position of the fault.
         """
-        name = os.fspath(file)
-        if not os.path.exists(name):
-            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name)
-        return cls(_core.read_csv(name))
+        return cls(_core.read_csv(_existing(file)))
+
+    @classmethod
+    @explained
+    def read_hdf5(cls, file: Union[str, os.PathLike[str]]) -> Table:
+        """Reads an HDF5 file of the program, such as the ``results.h5`` of a sweep. Units are SI.
+
+        Raises:
+            FileNotFoundError: if there is no such file.
+            RuntimeError: if the file is no such table, or HDF5 cannot be used; the message says why.
+        """
+        return cls(_core.read_hdf5(_existing(file)))
 
     @classmethod
     def from_columns(
@@ -190,6 +198,14 @@ class Table:
 
     def __repr__(self) -> str:
         return f"<Table of {len(self)} rows: {', '.join(self.columns)}>"
+
+
+def _existing(file: Union[str, os.PathLike[str]]) -> str:
+    """Returns the name of a file. Raises FileNotFoundError if there is none."""
+    name = os.fspath(file)
+    if not os.path.exists(name):
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name)
+    return name
 
 
 def _of_columns(header: list[tuple[str, str]], columns: list[_core.ColumnParts]) -> Table:

@@ -6,7 +6,9 @@
 #include <stdexcept>
 
 #include "api/checked.hpp"
+#include "figure/column_chart.hpp"
 #include "history/staged_folder.hpp"
+#include "history/table_file.hpp"
 #include "monograin/status.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/units.hpp"
@@ -68,7 +70,8 @@ SweepResult run_plan(const Sweep& plan, const SweepOptions& options) {
       plan, {.folder = result.folder,
              .threads = options.threads,
              .shard = {static_cast<std::size_t>(options.shard), static_cast<std::size_t>(options.shard_count)},
-             .progress = [&](std::size_t, std::size_t) { end_if_asked(options.stop); }});
+             .progress = [&](std::size_t, std::size_t) { end_if_asked(options.stop); },
+             .format = results_format(options.format)});
   result.missing = outcome.runs_missing;
   return result;
 }
@@ -80,7 +83,7 @@ SweepResult sweep(const Source& source, const SweepOptions& options) {
   SweepResult result = run_plan(plan, options);
   if (result.missing > 0) return result;
   if (plan.bands) result.no_figure = write_bands(plan, bands_of(plan, result.folder), result.folder);
-  result.results = history_of(read_csv(result.folder / "results.csv"));
+  result.results = history_of(read_table_file(figure::recorded_table(result.folder)));
   return result;
 }
 

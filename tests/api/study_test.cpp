@@ -43,6 +43,25 @@ TEST(StudySweep, HasARowForEachRunWithTheNumbersOfThatRun) {
   EXPECT_EQ(found.results["end.axial.force"][0], run.history["axial.force"].back());
 }
 
+TEST(StudySweep, HasTheSameResultsInWhateverFormatTheyAreWritten) {
+  const TemporaryFolder folder;
+  const Source source = yield_stresses("[\"30 MPa\", \"50 MPa\"]");
+  EXPECT_THROW(static_cast<void>(sweep(source, {.folder = folder.path() / "s", .format = "xml"})),
+               std::invalid_argument);
+  EXPECT_FALSE(fs::exists(folder.path() / "s"));
+  const History expected = sweep(source, {.folder = folder.path() / "s", .format = "csv"}).results;
+  try {
+    const SweepResult found = sweep(source, {.folder = folder.path() / "h", .format = "hdf5"});
+    EXPECT_TRUE(fs::exists(found.folder / "results.h5"));
+    EXPECT_EQ(found.results.words("status"), expected.words("status"));
+    for (const char* name : {"material.yield_stress", "end.axial.force"}) {
+      EXPECT_TRUE(std::ranges::equal(found.results[name], expected[name])) << name;
+    }
+  } catch (const std::runtime_error& missing) {
+    GTEST_SKIP() << missing.what();
+  }
+}
+
 TEST(StudySweep, IsDoneInShardsAndGoesOnWhereItWasEnded) {
   const TemporaryFolder folder;
   const Source source = yield_stresses("[30e6, 35e6, 40e6, 45e6]");

@@ -25,6 +25,41 @@ def test_a_sweep_has_the_table_of_the_program(run_program, tmp_path):
     assert table.header["sweep"] == "poisson"
 
 
+def test_results_in_hdf5_are_those_in_csv(tmp_path):
+    file = mg.scenario_folder() / "sweeps" / "poisson.toml"
+    expected = mg.sweep(file, tmp_path / "csv")
+    table = mg.sweep(file, tmp_path / "hdf5", format="hdf5")
+    assert not (tmp_path / "hdf5" / "results.csv").exists()
+    assert table.units == expected.units
+    for column in expected.columns:
+        assert_array_equal(table[column], expected[column])
+    assert mg.Table.read_hdf5(tmp_path / "hdf5" / "results.h5") == table
+    with pytest.raises(ValueError, match="format = xml: expected one of csv, hdf5"):
+        mg.sweep(file, tmp_path / "none", format="xml")
+    with pytest.raises(FileNotFoundError):
+        mg.Table.read_hdf5(tmp_path / "none.h5")
+    (tmp_path / "text.h5").write_text("a,b\n1,2\n")
+    with pytest.raises(RuntimeError, match="cannot be read as a table in HDF5"):
+        mg.Table.read_hdf5(tmp_path / "text.h5")
+
+
+def test_results_in_hdf5_are_read_by_h5py(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    scenario = (mg.scenario_folder() / "die.toml").as_posix()
+    plan = {"scenario": scenario, "vary": {"loading.configuration": {"values": ["simple", "die"]}}}
+    table = mg.sweep(plan, tmp_path, format="hdf5")
+    with h5py.File(tmp_path / "results.h5") as file:
+        force = file["outputs/end.axial.force"]
+        assert force.dtype == np.float64
+        assert force.attrs["unit"] == "N"
+        assert_array_equal(force[:], table["end.axial.force"])
+        assert list(file["inputs"]) == ["loading.configuration"]
+        assert file["inputs/loading.configuration"].asstr()[:].tolist() == ["simple", "die"]
+        assert list(file["outputs"]) == table.columns[4:]
+        assert file.attrs["design"] == "grid"
+        assert file.attrs["scenario_text"] == (mg.scenario_folder() / "die.toml").read_text(encoding="utf-8")
+
+
 def test_bands_of_a_sweep_are_those_of_the_program(run_program, tmp_path):
     scenario = (mg.scenario_folder() / "die.toml").as_posix()
     file = tmp_path / "spread.toml"
