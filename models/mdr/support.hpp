@@ -1,7 +1,11 @@
 /// Support of a free centre: which contacts can balance a push on it.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "mdr/particle.hpp"
+#include "system/regimes.hpp"
 
 namespace monograin::mdr {
 
