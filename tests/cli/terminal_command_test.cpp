@@ -64,12 +64,15 @@ TEST_F(Terminal, LostDataExitWithTwoAndAMessageInEveryCommandThatPrintsThem) {
   write_text(path("fit.toml"),
              "scenario = \"small.toml\"\n[data]\nfile = \"data/history.csv\"\nx = \"axial.displacement[m]\"\n"
              "y = \"axial.force[N]\"\n[free]\n\"material.youngs_modulus\" = { from = \"0.1 GPa\", to = \"10 GPa\" }\n");
-  const std::string plots = " --plots '" MONOGRAIN_SOURCE_DIR "/plots'";
+  fs::create_directory(path("plots"));
+  write_text(path("plots/line.toml"),
+             "title = \"t\"\nsource = \"s\"\n[[panel]]\n"
+             "curve = [{ parameter = { from = 0, to = 1 }, x = \"t\", y = \"t\" }]\n");
   for (const std::string& arguments :
        {std::string("--help"), std::string("--version"), std::string("run --help"), std::string("models"),
         std::string("models hertz"), std::string("models --parameters small.toml"), std::string("schema"),
         std::string("compare a.csv a.csv"), std::string("regress --scenarios s --curves c"),
-        std::string("sweep sweep.toml --design-only"), std::string("calibrate fit.toml"), "atlas --list" + plots,
+        std::string("sweep sweep.toml --design-only"), std::string("calibrate fit.toml"), std::string("atlas --list"),
         std::string("bench small.toml --integrator auto --rtol 1e-3 -o b"), std::string("stress small.toml"),
         std::string("stress --scenes 1 --first 3 -o t")}) {
     ASSERT_EQ(monograin(arguments).code, 0) << arguments << text("stderr.txt");
