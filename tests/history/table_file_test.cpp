@@ -22,17 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tables in HDF5, if this build and this machine have it.
 class Hdf5File : public ::testing::Test {
  protected:
-  void SetUp() override {
-    try {
-      expect_hdf5();
-    } catch (const std::runtime_error& missing) {
-      GTEST_SKIP() << missing.what();
-    }
-  }
-
   [[nodiscard]] fs::path file() const { return folder_.path() / "table.h5"; }
   [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
 

@@ -37,15 +37,8 @@ steps = [{ displacement = "0.1 R0", duration = "1 s" }, { force = "0 N", duratio
 points = 4
 )toml";
 
-/// Sweeps whose results are written as HDF5, if this build and this machine have it.
 class SweepResults : public SweepFileTest {
  protected:
-  void SetUp() override {
-    if (const std::string missing = refusal<std::runtime_error>([] { return expect_hdf5(), 0; }); !missing.empty()) {
-      GTEST_SKIP() << missing;
-    }
-  }
-
   [[nodiscard]] SweepOutcome run(const Sweep& sweep, const std::string& name, std::optional<ResultsFormat> format,
                                  int threads = 1, SweepShard shard = {}) const {
     return run_sweep(sweep,
