@@ -79,8 +79,9 @@ class ContactMap {
   /// Area of the part of a triangle within the contact; the distance is linear in the triangle.
   [[nodiscard]] double part_of(std::array<std::size_t, 3> corners) const {
     // The corners that touch come first.
-    const auto end = std::ranges::stable_partition(corners, [this](std::size_t i) { return bool(touches_[i]); });
-    const auto touching = static_cast<std::size_t>(end.begin() - corners.begin());
+    const auto free =
+        std::stable_partition(corners.begin(), corners.end(), [this](std::size_t i) { return bool(touches_[i]); });
+    const auto touching = static_cast<std::size_t>(free - corners.begin());
     const double whole = area_of(places_[corners[0]], places_[corners[1]], places_[corners[2]]);
     if (touching == 0) return 0.0;
     if (touching == corners.size()) return whole;

@@ -72,7 +72,7 @@ Sector sector_of(const Motion& motion) {
     return pairs.size() == 3 && move_alike(motion, pairs[a].walls[0], pairs[b].walls[0]);
   };
   // The pair on the axis is the one unlike the two others, else the one that goes deepest.
-  if (!alike(1, 2) && alike(0, 1)) std::ranges::rotate(pairs, pairs.end() - 1);
+  if (!alike(1, 2) && alike(0, 1)) std::rotate(pairs.begin(), pairs.end() - 1, pairs.end());
 
   const double quarter = 0.5 * std::numbers::pi;
   Sector sector{.angle = quarter, .is_axisymmetric = pairs.size() == 1};
