@@ -146,7 +146,7 @@ std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactC
 /// @throws std::invalid_argument with a pressure_table
 ContinuumMaterial continuum_material(const ModelInput& input) {
   if (input.curve("pressure_table") != nullptr) {
-    throw std::invalid_argument("pressure_table gives contacts their pressure, but finite elements no flow curve");
+    throw std::invalid_argument("pressure_table has no flow curve for finite elements; remove it");
   }
   ContinuumMaterial material = monograin::continuum_material(input);
   if (input.material("surface_energy") > 0.0) material.differences = {"finite elements leave out the adhesion"};

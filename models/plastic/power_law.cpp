@@ -24,7 +24,6 @@ ContinuumMaterial power_law_continuum(const ModelInput& input) {
   constexpr double k_least_strain = 1e-6;
   constexpr double k_largest_strain = 5.0;
   constexpr int k_points = 110;
-  constexpr int k_iterations = 200;
   for (const char* key : {"youngs_modulus", "poisson_ratio"}) {
     if (input.optional_material(key)) continue;
     throw std::invalid_argument(std::string("finite elements need the elastic constants; expected ") + key +
@@ -38,13 +37,14 @@ ContinuumMaterial power_law_continuum(const ModelInput& input) {
   const double modulus = material.youngs_modulus;
   const double strength = input.material("strength");
   // The elastic line ends where E e = kappa e^mu.
-  material.flow = {{0.0, modulus * std::pow(strength / modulus, 1.0 / (1.0 - exponent))}};
+  const double yield_strain = std::fmax(std::pow(strength / modulus, 1.0 / (1.0 - exponent)), k_least_strain);
+  if (yield_strain > k_largest_strain) return material;
+  material.flow = {{0.0, strength * std::pow(yield_strain, exponent)}};
   for (int i = 0; i < k_points; ++i) {
-    const double strain = k_least_strain * std::pow(k_largest_strain / k_least_strain, i / (k_points - 1.0));
-    double stress = material.flow.back().stress;
-    // sigma = kappa (eps_p + sigma/E)^mu: each repetition divides the error of log sigma by 1/mu or more.
-    for (int k = 0; k < k_iterations; ++k) stress = strength * std::pow(strain + stress / modulus, exponent);
-    material.flow.push_back({strain, std::fmax(stress, material.flow.back().stress)});
+    const double strain =
+        yield_strain + k_least_strain * std::pow(k_largest_strain / k_least_strain, i / (k_points - 1.0));
+    const double stress = strength * std::pow(strain, exponent);
+    material.flow.push_back({strain - stress / modulus, stress});
   }
   return material;
 }

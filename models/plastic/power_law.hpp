@@ -27,12 +27,17 @@ inline constexpr std::array k_power_law_material{
                 {},
                 true},
     QuantityKey{"youngs_modulus",
-                "Young's modulus, for unloading and ludwik (which takes infinity without it)",
+                "Young's modulus, for unloading, finite elements and ludwik (which takes infinity without it)",
                 Dimension::stress,
                 k_positive,
                 {},
                 true},
-    QuantityKey{"poisson_ratio", "Poisson's ratio, for unloading only", Dimension::none, k_poisson_to_half, {}, true},
+    QuantityKey{"poisson_ratio",
+                "Poisson's ratio, for unloading and finite elements only",
+                Dimension::none,
+                k_poisson_to_half,
+                {},
+                true},
 };
 
 /// Values of k_power_law_material that a scenario gives.

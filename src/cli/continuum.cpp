@@ -113,7 +113,8 @@ void add_continuum_command(CLI::App& app, Action& action) {
   command->add_flag("--error", options->estimates_error, "Compute on a coarser mesh as well, and state the error");
   command->add_flag("--keep", options->keeps_files, "Keep the files of CalculiX beside the history");
   add_overrides(*command, options->overrides);
-  command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME-continuum]");
+  command->add_option("-o,--output", options->output,
+                      "Folder of the results [runs/NAME-continuum, with --set runs/NAME-DIGEST-continuum]");
   command->footer("Example: monograin continuum scenarios/uniaxial.toml --mesh coarse");
   command->callback([options, &action] { action = [options] { return run_command(*options); }; });
 }

@@ -154,8 +154,8 @@ int show_laws_for(const std::string& file) {
       table
           ? "\"Force off finite elements\": largest deviation of the force of the walls that drive, loading the named "
             "material\nin this configuration, in the bands of displacement that the scene passes. The material of "
-            "the scene may be\nnearer, or farther off.\n"
-          : "There are no finite-element results for these walls.\n";
+            "the scene may be\nnearer, or farther off: monograin continuum computes that.\n"
+          : "There are no stored finite-element results for these walls; monograin continuum may compute them.\n";
   print_data("{}", text);
   return k_success;
 }

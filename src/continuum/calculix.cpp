@@ -27,8 +27,8 @@ constexpr double k_radius = 10.0;
 constexpr double k_modulus = 1000.0;
 /// Distance of the far end of a contact spring over R0: the spring stays normal to its wall.
 constexpr double k_far = 1e4;
-/// Stiffness of the contact springs over E/R0, per area: walls enter the surface by less than 3e-4 R0 between two
-/// walls, and by at most twice as much under more, where softer springs save iterations.
+/// Stiffness of the contact springs over E/R0, per area: nodes enter the wall by less than 3e-4 R0 between two walls,
+/// and by at most twice as much under more, where softer springs save iterations.
 constexpr double k_penalty = 2000.0;
 constexpr double k_penalty_of_sectors = 1000.0;
 /// Height over R0 below which nodes have no spring, since they never reach the wall.
@@ -40,11 +40,10 @@ constexpr double k_elastic_yield = 10.0;
 constexpr std::string_view k_controls =
     "*CONTROLS, PARAMETERS=TIME INCREMENTATION\n8,14,9,20,14,4,,8,,\n0.25,0.5,0.75,0.85,,,2.0,\n"
     "*CONTROLS, PARAMETERS=FIELD\n1e-5,1e-2\n";
-/// First increment of a step: motion of the walls over the length of an element on the surface. New nodes touch in
-/// every step, and CalculiX divides a step in vain until few of them do: with an eighth of a step of 0.01 R0 it needs
-/// 0.65 of the time on 80 elements.
+/// Motion of the walls in the first increment of a step, over the length of an element on the surface. CalculiX divides
+/// a step until few new nodes touch; to begin with a small part saves these trials, a third of the time on 80 elements.
 constexpr double k_first_increment = 0.05;
-/// CalculiX prints only the last of so many increments of a step.
+/// Most increments of a step; as frequency of printing it leaves only the last one.
 constexpr int k_most_increments = 1000;
 
 std::string wall_set(std::size_t wall) { return fmt::format("WALL{}", wall); }
@@ -82,10 +81,11 @@ class CalculixInput {
   std::string text() {
     add_body();
     add_material();
-    for (std::size_t i = 0; i < problem_.sector.walls.size(); ++i) add_wall(i);
+    const std::vector<std::vector<double>> areas = node_areas(mesh_);
+    for (std::size_t i = 0; i < problem_.sector.walls.size(); ++i) add_wall(i, areas);
     add_symmetry();
-    WallPositions last(problem_.sector.walls.size(), 0.0);
-    for (const WallPositions& positions : problem_.instants) {
+    WallOverlaps last(problem_.sector.walls.size(), 0.0);
+    for (const WallOverlaps& positions : problem_.instants) {
       add_step(last, positions);
       last = positions;
     }
@@ -136,10 +136,9 @@ class CalculixInput {
 
   /// A spring from each surface node to a node far beyond the wall, which moves with the wall. It presses once the node
   /// has come up to the wall.
-  void add_wall(std::size_t index) {
+  void add_wall(std::size_t index, const std::vector<std::vector<double>>& areas) {
     const int axis = problem_.sector.walls[index].axis;
     const double penalty = problem_.sector.is_axisymmetric ? k_penalty : k_penalty_of_sectors;
-    const std::vector<std::vector<double>> areas = node_areas(mesh_);
     add("*NODE, NSET={}", wall_set(index));
     std::string springs;
     for (std::size_t k = 0; k < areas.size(); ++k) {
@@ -199,7 +198,7 @@ class CalculixInput {
     text_ += fixed;
   }
 
-  void add_step(const WallPositions& before, const WallPositions& positions) {
+  void add_step(const WallOverlaps& before, const WallOverlaps& positions) {
     double motion = 0.0;
     for (std::size_t i = 0; i < positions.size(); ++i) motion = std::fmax(motion, std::abs(positions[i] - before[i]));
     const double element = 0.5 * std::numbers::pi / static_cast<double>(mesh_.surface.front().size() - 1);
@@ -315,8 +314,8 @@ std::string calculix_version(const fs::path& ccx, const fs::path& folder) {
   return "CalculiX " + text.substr(number, text.find_first_of(" \n", number) - number);
 }
 
-SectorSolution solve(const SectorProblem& problem, const fs::path& ccx, const fs::path& folder, const std::string& name,
-                     const std::function<void(std::size_t)>& progress) {
+SectorSolution run_calculix(const SectorProblem& problem, const fs::path& ccx, const fs::path& folder,
+                            const std::string& name, const std::function<void(std::size_t)>& progress) {
   write_text_file(folder / (name + ".inp"), calculix_input(problem));
   const fs::path log = folder / (name + ".log");
   const std::function<void()> meanwhile =

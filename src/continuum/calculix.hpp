@@ -14,15 +14,15 @@
 
 namespace monograin {
 
-/// Displacements of the walls of a sector at an instant, over R0.
-using WallPositions = std::vector<double>;
+/// Overlaps of the walls of a sector at an instant, over R0.
+using WallOverlaps = std::vector<double>;
 
 /// A sector with its walls, material and mesh.
 struct SectorProblem {
   Sector sector;
   SectorMesh mesh;
   ContinuumMaterial material;
-  std::vector<WallPositions> instants;  ///< the walls move straight from one to the next; the first from 0
+  std::vector<WallOverlaps> instants;  ///< the walls move straight from one to the next; the first from 0
 };
 
 /// Input file of CalculiX: one step for each instant. Lengths are in units of R0/10, stresses of E/1000.
@@ -50,8 +50,8 @@ struct SectorSolution {
 /// Solves a problem in a folder; the files of CalculiX, which begin with `name`, stay there.
 /// @param progress  called now and then with the number of computed instants; may be empty
 /// @throws std::runtime_error if CalculiX cannot be started or a file cannot be written
-[[nodiscard]] SectorSolution solve(const SectorProblem& problem, const std::filesystem::path& ccx,
-                                   const std::filesystem::path& folder, const std::string& name,
-                                   const std::function<void(std::size_t)>& progress);
+[[nodiscard]] SectorSolution run_calculix(const SectorProblem& problem, const std::filesystem::path& ccx,
+                                          const std::filesystem::path& folder, const std::string& name,
+                                          const std::function<void(std::size_t)>& progress);
 
 }  // namespace monograin

@@ -51,8 +51,8 @@ class ContactMap {
  private:
   [[nodiscard]] std::size_t index(std::size_t k, std::size_t j) const { return k * count_ + j; }
 
-  /// Distance of a node within the contact from its edge, negative: continued from the two free nodes that follow it
-  /// along each line of the mesh, at most to the first of them.
+  /// Distance of a node within the contact from its edge, negative: continued linearly from the next two free nodes
+  /// along each line of the mesh, and at most 0.
   [[nodiscard]] double depth_within(std::size_t k, std::size_t j) const {
     double sum = 0.0;
     int number = 0;
@@ -85,10 +85,10 @@ class ContactMap {
     const double whole = area_of(places_[corners[0]], places_[corners[1]], places_[corners[2]]);
     if (touching == 0) return 0.0;
     if (touching == corners.size()) return whole;
-    const std::size_t lonely = touching == 1 ? corners[0] : corners[2];
+    const std::size_t single = touching == 1 ? corners[0] : corners[2];
     double share = 1.0;
     for (const std::size_t corner : corners) {
-      if (corner != lonely) share *= distances_[lonely] / (distances_[lonely] - distances_[corner]);
+      if (corner != single) share *= distances_[single] / (distances_[single] - distances_[corner]);
     }
     return touching == 1 ? share * whole : (1.0 - share) * whole;
   }

@@ -32,7 +32,8 @@ constexpr double k_typical_strain = 0.2;
 /// Motion of a wall between two computed instants, over R0, from which on the path is coarse.
 constexpr double k_coarse_motion = 0.02;
 
-/// Meshes between two walls and under more, from one coarser than the coarsest that a user may ask for.
+/// Meshes between two walls and under more. The first only serves to state the error of the coarsest that a user may
+/// ask for; the others are in the order of k_continuum_meshes.
 constexpr std::array k_wedge_meshes{SectorMeshSize{24, 1, 2.5}, SectorMeshSize{40, 1, 2.5}, SectorMeshSize{80, 1, 2.5},
                                     SectorMeshSize{160, 1, 2.5}};
 constexpr std::array k_sector_meshes{SectorMeshSize{16, 4, 1.0}, SectorMeshSize{24, 6, 1.0}, SectorMeshSize{32, 8, 1.0},
@@ -64,40 +65,53 @@ struct ParticleState {
   std::vector<ClassState> classes{};
 };
 
-/// Indices of the instants that finite elements compute.
-std::vector<std::size_t> chosen_instants(const Motion& motion) {
-  const std::size_t class_count = motion.classes.size();
-  std::vector<double> largest(class_count, 0.0);
+/// Largest force of each contact class.
+std::vector<double> largest_forces(const Motion& motion) {
+  std::vector<double> largest(motion.classes.size(), 0.0);
   for (const MotionInstant& instant : motion.instants) {
-    for (std::size_t c = 0; c < class_count; ++c) {
-      const double force = std::abs(instant.contacts[c].force);
-      if (std::isfinite(force)) largest[c] = std::fmax(largest[c], force);
+    for (std::size_t c = 0; c < largest.size(); ++c) {
+      largest[c] = std::fmax(largest[c], std::abs(instant.contacts[c].force));
     }
   }
-  const auto is_far = [&](const MotionInstant& from, const MotionInstant& to) {
-    for (std::size_t c = 0; c < class_count; ++c) {
-      const double motion_of_wall = to.contacts[c].displacement - from.contacts[c].displacement;
-      if (std::abs(motion_of_wall) > k_largest_motion * motion.initial_radius) return true;
-      const double change = std::abs(to.contacts[c].force - from.contacts[c].force);
-      if (change > k_largest_force_change * largest[c]) return true;
-    }
-    return false;
+  return largest;
+}
+
+/// True if a wall moves between two instants, or its force changes, by more than two computed ones may differ.
+bool are_far_apart(const Motion& motion, const std::vector<double>& largest_force, const MotionInstant& from,
+                   const MotionInstant& to) {
+  for (std::size_t c = 0; c < largest_force.size(); ++c) {
+    const double distance = to.contacts[c].displacement - from.contacts[c].displacement;
+    if (std::abs(distance) > k_largest_motion * motion.initial_radius) return true;
+    const double change = std::abs(to.contacts[c].force - from.contacts[c].force);
+    if (change > k_largest_force_change * largest_force[c]) return true;
+  }
+  return false;
+}
+
+/// True if a wall begins, stops or turns at an instant that is neither the first nor the last.
+bool has_turn(const Motion& motion, std::size_t i) {
+  const auto direction = [&](std::size_t from, std::size_t c) {
+    const double distance =
+        motion.instants[from + 1].contacts[c].displacement - motion.instants[from].contacts[c].displacement;
+    return std::abs(distance) <= k_same_number * motion.initial_radius ? 0 : (distance > 0.0 ? 1 : -1);
   };
-  // True where a wall begins, stops or turns.
-  const auto turns = [&](std::size_t i) {
-    for (std::size_t c = 0; c < class_count; ++c) {
-      const auto displacement = [&](std::size_t k) { return motion.instants[k].contacts[c].displacement; };
-      const double before = displacement(i) - displacement(i - 1);
-      const double after = displacement(i + 1) - displacement(i);
-      if (before * after <= 0.0 && before != after) return true;
-    }
-    return false;
-  };
+  for (std::size_t c = 0; c < motion.classes.size(); ++c) {
+    if (direction(i - 1, c) != direction(i, c)) return true;
+  }
+  return false;
+}
+
+/// Indices of the instants that finite elements compute.
+std::vector<std::size_t> chosen_instants(const Motion& motion) {
+  const std::vector<double> forces = largest_forces(motion);
   std::vector<std::size_t> chosen;
   std::size_t last = 0;
   for (std::size_t i = 1; i < motion.instants.size(); ++i) {
     const bool is_end = i + 1 == motion.instants.size();
-    if (!is_end && !turns(i) && !is_far(motion.instants[last], motion.instants[i + 1])) continue;
+    if (!is_end && !has_turn(motion, i) &&
+        !are_far_apart(motion, forces, motion.instants[last], motion.instants[i + 1])) {
+      continue;
+    }
     chosen.push_back(i);
     last = i;
   }
@@ -117,17 +131,22 @@ std::vector<Column> columns_of(const Motion& motion) {
 }
 
 /// Computes the motion of a run on one mesh.
-class Elements {
+class ParticleElements {
  public:
-  Elements(const Motion& motion, const ContinuumMaterial& material, const std::vector<std::size_t>& instants,
-           const SectorMeshSize& size)
-      : motion_(motion), problem_{.sector = sector_of(motion), .mesh = {}, .material = material, .instants = {}} {
+  ParticleElements(const Motion& motion, const Sector& sector, const ContinuumMaterial& material,
+                   const std::vector<std::size_t>& instants, const SectorMeshSize& size)
+      : motion_(motion), problem_{.sector = sector, .mesh = {}, .material = material, .instants = {}} {
     problem_.mesh = sector_mesh(size, problem_.sector.angle);
     for (const std::size_t i : instants) {
-      WallPositions& positions = problem_.instants.emplace_back();
+      WallOverlaps& positions = problem_.instants.emplace_back();
       for (const SectorWall& wall : problem_.sector.walls) {
         positions.push_back(motion.overlap(motion.walls[wall.wall], motion.instants[i]) / motion.initial_radius);
       }
+    }
+    wall_of_class_.assign(motion.classes.size(), problem_.sector.walls.size());
+    for (std::size_t w = 0; w < motion.walls.size(); ++w) {
+      std::size_t& wall = wall_of_class_[motion.walls[w].contact_class];
+      wall = std::min(wall, problem_.sector.sector_wall_of[w]);
     }
     std::vector<Eigen::Vector3d> nodes;
     for (const std::size_t node : problem_.mesh.surface_nodes()) nodes.push_back(problem_.mesh.nodes[node]);
@@ -141,7 +160,7 @@ class Elements {
                                    std::string& failure) const {
     std::function<void(std::size_t)> progress;
     if (options.progress) progress = [&](std::size_t done) { options.progress(done, problem_.instants.size()); };
-    const SectorSolution solution = monograin::solve(problem_, options.ccx, options.folder, name, progress);
+    const SectorSolution solution = run_calculix(problem_, options.ccx, options.folder, name, progress);
     failure = solution.failure;
     std::vector<ParticleState> states;
     for (std::size_t i = 0; i < solution.states.size(); ++i) {
@@ -155,7 +174,7 @@ class Elements {
     return {.nodes = nodes, .longitudes = problem_.mesh.surface.size()};
   }
 
-  [[nodiscard]] ParticleState state_of(const SectorState& sector, const WallPositions& positions) const {
+  [[nodiscard]] ParticleState state_of(const SectorState& sector, const WallOverlaps& positions) const {
     const double radius = motion_.initial_radius;
     const SectorSurface surface = surface_of(sector.surface);
     ParticleState state{.volume = sphere_volume(radius) * volume_below(surface) / initial_volume_,
@@ -167,67 +186,77 @@ class Elements {
       contacts.push_back({.force = scale * problem_.material.youngs_modulus * sector.forces[i],
                           .area = scale * contact_area(surface, wall.axis, 1.0 - positions[i])});
     }
-    // Of several walls in a class the one at the pole comes first in the sector, where the mesh is finest.
-    for (std::size_t place = contacts.size(); place-- > 0;) {
-      for (std::size_t w = 0; w < motion_.walls.size(); ++w) {
-        if (problem_.sector.places[w] == place) state.classes[motion_.walls[w].contact_class] = contacts[place];
-      }
-    }
+    for (std::size_t c = 0; c < state.classes.size(); ++c) state.classes[c] = contacts[wall_of_class_[c]];
     return state;
   }
 
   const Motion& motion_;
   SectorProblem problem_;
+  /// Wall of the sector that stands for each contact class: the first of several, which is nearest to the pole.
+  std::vector<std::size_t> wall_of_class_;
   double initial_volume_ = 0.0;
 };
 
-/// History of the states, and the work of the walls by the trapezoidal rule.
-Table history_of(const Motion& motion, const std::vector<std::size_t>& instants,
-                 const std::vector<ParticleState>& states) {
-  std::vector<double> wall_counts(motion.classes.size(), 0.0);
-  std::vector<const MovingWall*> first(motion.classes.size(), nullptr);
-  for (const MovingWall& wall : motion.walls) {
-    wall_counts[wall.contact_class] += 1.0;
-    if (first[wall.contact_class] == nullptr) first[wall.contact_class] = &wall;
-  }
+/// History of the states after the undeformed one, and the work of the walls by the trapezoidal rule.
+Table history_of(const Motion& motion, const std::vector<std::size_t>& instants, std::vector<ParticleState> states) {
+  std::vector<const MotionInstant*> rows{&motion.instants.front()};
+  for (const std::size_t i : instants) rows.push_back(&motion.instants[i]);
+  states.insert(states.begin(), {.volume = sphere_volume(motion.initial_radius),
+                                 .classes = std::vector<ClassState>(motion.classes.size())});
   Table history(columns_of(motion));
-  const ParticleState undeformed{.volume = sphere_volume(motion.initial_radius),
-                                 .classes = std::vector<ClassState>(motion.classes.size())};
   double work = 0.0;
-  for (std::size_t row = 0; row <= states.size(); ++row) {
-    const MotionInstant& instant = motion.instants[row == 0 ? 0 : instants[row - 1]];
-    const MotionInstant& before = motion.instants[row < 2 ? 0 : instants[row - 2]];
-    const ParticleState& state = row == 0 ? undeformed : states[row - 1];
-    const ParticleState& last = row < 2 ? undeformed : states[row - 2];
-    std::vector<double> cells{instant.time, state.volume, 0.0};
-    for (std::size_t c = 0; c < motion.classes.size(); ++c) {
-      const ClassState& contact = state.classes[c];
-      const double displacement = instant.contacts[c].displacement;
-      work += wall_counts[c] * 0.5 * (contact.force + last.classes[c].force) *
-              (displacement - before.contacts[c].displacement);
-      for (const double value :
-           {displacement, motion.overlap(*first[c], instant), contact.force, contact.radius(), contact.pressure()}) {
-        cells.push_back(value);
-      }
+  for (std::size_t row = 0; row < states.size(); ++row) {
+    const std::size_t before = row == 0 ? 0 : row - 1;
+    for (const MovingWall& wall : motion.walls) {
+      const std::size_t c = wall.contact_class;
+      work += 0.5 * (states[row].classes[c].force + states[before].classes[c].force) *
+              (rows[row]->contacts[c].displacement - rows[before]->contacts[c].displacement);
     }
-    cells[2] = work;
+    std::vector<double> cells{rows[row]->time, states[row].volume, work};
+    for (std::size_t c = 0; c < motion.classes.size(); ++c) {
+      const auto wall = std::ranges::find(motion.walls, c, &MovingWall::contact_class);
+      const ClassState& contact = states[row].classes[c];
+      cells.insert(cells.end(), {rows[row]->contacts[c].displacement, motion.overlap(*wall, *rows[row]), contact.force,
+                                 contact.radius(), contact.pressure()});
+    }
     history.append(cells);
   }
   return history;
 }
 
-/// True for each computed instant at which the first class that moves is deeper than ever before.
-std::vector<bool> loading_instants(const Motion& motion, const std::vector<std::size_t>& instants) {
-  const auto displacement = [&](std::size_t i, std::size_t c) { return motion.instants[i].contacts[c].displacement; };
-  std::size_t driven = 0;
-  while (driven + 1 < motion.classes.size() && displacement(instants.front(), driven) == displacement(0, driven)) {
-    ++driven;
+/// Largest motion of a wall between computed instants, over R0.
+double largest_motion(const Motion& motion, const std::vector<std::size_t>& instants) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    const MotionInstant& before = motion.instants[i == 0 ? 0 : instants[i - 1]];
+    for (std::size_t c = 0; c < motion.classes.size(); ++c) {
+      const double distance = motion.instants[instants[i]].contacts[c].displacement - before.contacts[c].displacement;
+      largest = std::fmax(largest, std::abs(distance) / motion.initial_radius);
+    }
   }
+  return largest;
+}
+
+/// The first contact class that moves at all; the last if none does.
+std::size_t driven_class(const Motion& motion) {
+  for (std::size_t c = 0; c + 1 < motion.classes.size(); ++c) {
+    const double start = motion.instants.front().contacts[c].displacement;
+    const bool moves = std::ranges::any_of(
+        motion.instants, [&](const MotionInstant& instant) { return instant.contacts[c].displacement != start; });
+    if (moves) return c;
+  }
+  return motion.classes.size() - 1;
+}
+
+/// True for each computed instant at which the driven class is as deep as ever before, or deeper.
+std::vector<bool> loading_instants(const Motion& motion, const std::vector<std::size_t>& instants) {
+  const std::size_t driven = driven_class(motion);
   std::vector<bool> loads;
-  double deepest = displacement(0, driven);
+  double deepest = motion.instants.front().contacts[driven].displacement;
   for (const std::size_t i : instants) {
-    loads.push_back(displacement(i, driven) > deepest);
-    deepest = std::fmax(deepest, displacement(i, driven));
+    const double displacement = motion.instants[i].contacts[driven].displacement;
+    loads.push_back(displacement >= deepest);
+    deepest = std::fmax(deepest, displacement);
   }
   return loads;
 }
@@ -332,30 +361,24 @@ ContinuumRun run_continuum(const Run& law, const ContinuumOptions& options) {
   const Motion motion = motion_of(law.scenario, law.record.history);
   const std::vector<std::size_t> instants = chosen_instants(motion);
   if (instants.empty()) throw std::invalid_argument("the run of the law ended where it began: " + law.record.message);
-  double largest_motion = 0.0;
-  for (std::size_t i = 0; i < instants.size(); ++i) {
-    const MotionInstant& before = motion.instants[i == 0 ? 0 : instants[i - 1]];
-    for (std::size_t c = 0; c < motion.classes.size(); ++c) {
-      const double distance = motion.instants[instants[i]].contacts[c].displacement - before.contacts[c].displacement;
-      largest_motion = std::fmax(largest_motion, std::abs(distance) / motion.initial_radius);
-    }
-  }
-  const auto& meshes = sector_of(motion).is_axisymmetric ? k_wedge_meshes : k_sector_meshes;
-  const auto level =
-      static_cast<std::size_t>(std::ranges::find(k_continuum_meshes, options.mesh) - k_continuum_meshes.begin()) + 1;
+  const Sector sector = sector_of(motion);
+  const auto& meshes = sector.is_axisymmetric ? k_wedge_meshes : k_sector_meshes;
+  const auto asked = std::ranges::find(k_continuum_meshes, options.mesh) - k_continuum_meshes.begin();
+  const SectorMeshSize& coarse_size = meshes.at(static_cast<std::size_t>(asked));
+  const SectorMeshSize& size = meshes.at(static_cast<std::size_t>(asked) + 1);
   ContinuumRun result;
   result.run.scenario = law.scenario;
   result.run.classes = law.classes;
   result.solver = calculix_version(options.ccx, options.folder);
   RunRecord& record = result.run.record;
-  if (largest_motion > k_coarse_motion) {
+  if (const double apart = largest_motion(motion, instants); apart > k_coarse_motion) {
     record.warnings.push_back(
-        fmt::format("rows of the run are up to {:.2g} R0 apart, and the elements follow straight "
-                    "lines between them; a larger output.points makes the path exact",
-                    largest_motion));
+        fmt::format("rows of the run are up to {:.2g} R0 apart, and the walls move straight between "
+                    "them; a larger output.points makes the path exact",
+                    apart));
   }
 
-  const Elements elements(motion, material, instants, meshes[level]);
+  const ParticleElements elements(motion, sector, material, instants, size);
   result.elements = elements.element_count();
   std::string failure;
   const std::vector<ParticleState> states = elements.solve(options, "continuum", failure);
@@ -364,12 +387,12 @@ ContinuumRun run_continuum(const Run& law, const ContinuumOptions& options) {
   if (failure.empty()) record.limit = law.record.limit;
   std::vector<ParticleState> coarse;
   if (options.estimates_error && failure.empty()) {
-    const Elements coarser(motion, material, instants, meshes[level - 1]);
+    const ParticleElements coarser(motion, sector, material, instants, coarse_size);
     coarse = coarser.solve(options, "coarser", failure);
     if (!failure.empty()) record.warnings.push_back("the coarser mesh: " + failure);
   }
-  result.differences = differences_of(motion, instants, states, coarse,
-                                      static_cast<double>(meshes[level].meridian) / meshes[level - 1].meridian);
+  result.differences =
+      differences_of(motion, instants, states, coarse, static_cast<double>(size.meridian) / coarse_size.meridian);
   record.history = history_of(motion, instants, states);
   record.history.header = header_of(law, result, options.mesh);
   record.events = Table(law.record.events.columns());
@@ -389,7 +412,8 @@ std::string continuum_json(const ContinuumRun& result, std::string_view mesh) {
   }
   Json differences = Json::array();
   for (const auto& [column, loading, unloading, mesh_error] : result.differences) {
-    differences.push_back({{"column", column}, {"loading", loading}, {"unloading", unloading}, {"mesh", mesh_error}});
+    differences.push_back(
+        {{"column", column}, {"loading", loading}, {"unloading", unloading}, {"mesh_error", mesh_error}});
   }
   json["elements"] = {{"solver", result.solver},
                       {"mesh", mesh},

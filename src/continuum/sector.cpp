@@ -79,14 +79,14 @@ Sector sector_of(const Motion& motion) {
   if (sector.is_axisymmetric) sector.angle = k_wedge_angle;
   const bool is_mirrored = alike(1, 2);
   if (is_mirrored) sector.angle = 0.5 * quarter;
-  sector.places.resize(motion.walls.size());
+  sector.sector_wall_of.resize(motion.walls.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const bool is_second_of_mirror = is_mirrored && i == 2;
     if (!is_second_of_mirror) {
       const double multiplicity = i == 0 ? 2.0 * std::numbers::pi / sector.angle : 4.0;
       sector.walls.push_back({i == 0 ? 2 : static_cast<int>(i) - 1, pairs[i].walls[0], multiplicity});
     }
-    for (const std::size_t wall : pairs[i].walls) sector.places[wall] = sector.walls.size() - 1;
+    for (const std::size_t wall : pairs[i].walls) sector.sector_wall_of[wall] = sector.walls.size() - 1;
   }
   return sector;
 }

@@ -20,7 +20,7 @@ struct Sector {
   double angle = 0.0;  ///< [rad]
   bool is_axisymmetric = false;
   std::vector<SectorWall> walls{};
-  std::vector<std::size_t> places{};  ///< for each wall of the motion, the index of its wall of the sector
+  std::vector<std::size_t> sector_wall_of{};  ///< for each wall of the motion, the index of its wall of the sector
 };
 
 /// Least sector for the walls of a run as seen from the particle's centre: a thin wedge between two walls, an eighth of

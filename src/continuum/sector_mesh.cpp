@@ -14,11 +14,11 @@ using Eigen::Vector2d;
 constexpr double k_core_radius = 0.5;
 /// Depths from which on elements are twice as long as above.
 constexpr std::array k_coarsening_depths{0.10, 0.25};
-/// Thickness of a ring over the length of its elements: of the first one, at most, and where four elements meet two.
+// Thicknesses of rings over the length of their elements.
 constexpr double k_first_thickness = 0.9;
 constexpr double k_largest_thickness = 1.1;
-constexpr double k_joint_thickness = 2.4;
-constexpr double k_growth = 1.12;  ///< from ring to ring
+constexpr double k_joint_thickness = 2.4;  ///< of a ring in which four elements meet two
+constexpr double k_growth = 1.12;          ///< from ring to ring
 constexpr double k_joint_middle = 0.45;
 /// Part of a rectangle in the outline of the middle; the rest is a circle.
 constexpr double k_squareness = 0.6;

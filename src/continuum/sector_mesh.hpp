@@ -11,7 +11,7 @@ namespace monograin {
 /// Fineness of a mesh.
 struct SectorMeshSize {
   int meridian = 40;             ///< elements on the surface from pole to equator; a multiple of 8
-  int longitude = 1;             ///< elements over the longitudes of the sector
+  int longitude = 1;             ///< elements over the longitudes of a sector; a quarter has twice as many
   double pole_refinement = 1.0;  ///< length of the element at the equator over that at the pole
 };
 

@@ -82,10 +82,16 @@ void run_gnuplot(const fs::path& gnuplot, const fs::path& script, const fs::path
   const std::string drawing = (fs::path(".") / workplace.path().filename() / k_drawing).string();
   const fs::path log = workplace.path() / k_log;
   // --default-settings: a figure must not depend on somebody's ~/.gnuplot.
-  const int code = run_program(
-      gnuplot,
-      {"--default-settings", "-e", fmt::format("output = '{}'", drawing), (fs::path(".") / script.filename()).string()},
-      folder, log);
+  const int code = [&] {
+    try {
+      return run_program(gnuplot,
+                         {"--default-settings", "-e", fmt::format("output = '{}'", drawing),
+                          (fs::path(".") / script.filename()).string()},
+                         folder, log);
+    } catch (const std::runtime_error& error) {
+      throw FigureError(error.what());
+    }
+  }();
   std::error_code failure;
   const auto size = fs::file_size(workplace.path() / k_drawing, failure);
   if (code != 0 || failure || size == 0) {

@@ -28,18 +28,54 @@ std::string cannot_be_started(const fs::path& program, int error) {
   return fmt::format("{} cannot be started: {}", program.string(), std::strerror(error));
 }
 
+/// Puts a file in the place of a standard stream.
+bool redirect(int stream, const char* file, int flags) {
+  constexpr mode_t k_mode = 0644;
+  const int opened = open(file, flags | O_CLOEXEC, k_mode);
+  return opened >= 0 && dup2(opened, stream) == stream;
+}
+
 /// Turns a new process into a program, or sends the reason why not. Calls only what is safe after fork().
 [[noreturn]] void become(const fs::path& program, const std::vector<char*>& argv, const fs::path& folder,
-                         const fs::path& log, int failure) {
+                         const fs::path& log, pid_t parent, int failure) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  const bool is_ready = chdir(folder.c_str()) == 0 && dup2(open("/dev/null", O_RDONLY), STDIN_FILENO) == STDIN_FILENO &&
-                        dup2(open(log.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0644), STDOUT_FILENO) == STDOUT_FILENO &&
-                        dup2(STDOUT_FILENO, STDERR_FILENO) == STDERR_FILENO;
-  if (is_ready) execv(program.c_str(), argv.data());
+  if (getppid() != parent) _exit(EXIT_FAILURE);  // the parent has ended before
+  if (chdir(folder.c_str()) == 0 && redirect(STDIN_FILENO, "/dev/null", O_RDONLY) &&
+      redirect(STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_EXCL) &&
+      dup2(STDOUT_FILENO, STDERR_FILENO) == STDERR_FILENO) {
+    execv(program.c_str(), argv.data());
+  }
   const int error = errno;
   [[maybe_unused]] const ssize_t sent = write(failure, &error, sizeof error);
   _exit(EXIT_FAILURE);
 }
+
+/// A process of which this one waits for the end. The destructor ends it, if it goes on.
+class Child {
+ public:
+  explicit Child(pid_t process) : process_(process) {}
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child() {
+    if (process_ <= 0) return;
+    kill(process_, SIGTERM);
+    while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) continue;
+  }
+
+  /// Status of the ended process; none while it goes on.
+  /// @param waits  false: returns at once
+  std::optional<int> status(bool waits) {
+    int status = 0;
+    const pid_t ended = waitpid(process_, &status, waits ? 0 : WNOHANG);
+    if (ended == 0 || (ended < 0 && errno == EINTR)) return std::nullopt;
+    process_ = 0;
+    if (ended < 0) throw std::runtime_error(fmt::format("a program is lost: {}", std::strerror(errno)));
+    return status;
+  }
+
+ private:
+  pid_t process_;
+};
 
 }  // namespace
 
@@ -65,23 +101,24 @@ int run_program(const fs::path& program, std::vector<std::string> words, const f
   // The child sends the reason if it cannot start the program; else the end of the pipe closes.
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error(cannot_be_started(program, errno));
-  const pid_t child = fork();
-  if (child == 0) become(program, argv, folder, log, ends[1]);
-  const int fork_error = errno;
+  const pid_t parent = getpid();
+  const pid_t process = fork();
+  if (process == 0) become(program, argv, folder, log, parent, ends[1]);
+  int failure = process < 0 ? errno : 0;
   close(ends[1]);
-  int failure = child < 0 ? fork_error : 0;
-  if (child > 0 && read(ends[0], &failure, sizeof failure) != sizeof failure) failure = 0;
+  Child child(process);
+  int reason = 0;
+  if (process > 0 && read(ends[0], &reason, sizeof reason) == sizeof reason) failure = reason;
   close(ends[0]);
-  int status = 0;
-  while (child > 0) {
-    const pid_t ended = waitpid(child, &status, meanwhile ? WNOHANG : 0);
-    if (ended == child || (ended < 0 && errno != EINTR)) break;
+  if (failure != 0) throw std::runtime_error(cannot_be_started(program, failure));
+  for (;;) {
+    if (const auto status = child.status(!meanwhile)) {
+      return WIFEXITED(*status) ? WEXITSTATUS(*status) : -WTERMSIG(*status);
+    }
     if (!meanwhile) continue;
     meanwhile();
     std::this_thread::sleep_for(k_interval);
   }
-  if (failure != 0) throw std::runtime_error(cannot_be_started(program, failure));
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
 }  // namespace monograin

@@ -106,29 +106,30 @@ std::filesystem::path stand_in(const TemporaryFolder& folder, const std::string&
   return folder.path() / "ccx";
 }
 
-TEST(Solve, KeepsWhatIsComputedAndSaysWhyItEnds) {
+TEST(RunCalculix, KeepsWhatIsComputedAndSaysWhyItEnds) {
   const SectorProblem problem = die_problem();
   const TemporaryFolder folder;
   const auto ccx =
       stand_in(folder, shrunk(problem, 1), "echo ' *ERROR: too many cutbacks'; echo ' best solution'; exit 201\n");
-  const SectorSolution solution = solve(problem, ccx, folder.path(), "job", {});
+  const SectorSolution solution = run_calculix(problem, ccx, folder.path(), "job", {});
   EXPECT_EQ(solution.states.size(), 1U);
   EXPECT_EQ(solution.failure, "CalculiX ended with code 201; its last words: ERROR: too many cutbacks");
 }
 
-TEST(Solve, SaysWhichSignalEndedCalculix) {
+TEST(RunCalculix, SaysWhichSignalEndedCalculix) {
   const TemporaryFolder folder;
   const auto ccx = stand_in(folder, "", "kill -KILL $$\n");
-  EXPECT_EQ(solve(die_problem(), ccx, folder.path(), "job", {}).failure, "CalculiX was ended by signal 9 (Killed)");
+  EXPECT_EQ(run_calculix(die_problem(), ccx, folder.path(), "job", {}).failure,
+            "CalculiX was ended by signal 9 (Killed)");
 }
 
-TEST(Solve, CountsTheInstantsWhileCalculixGoesOn) {
+TEST(RunCalculix, CountsTheInstantsWhileCalculixGoesOn) {
   const SectorProblem problem = die_problem();
   const TemporaryFolder folder;
   const auto ccx = stand_in(folder, shrunk(problem, 2), "printf ' STEP INC\\n 1 1\\n 2 1\\n' > $1.sta; sleep 0.3\n");
   std::size_t most = 0;
   const SectorSolution solution =
-      solve(problem, ccx, folder.path(), "job", [&](std::size_t done) { most = std::max(most, done); });
+      run_calculix(problem, ccx, folder.path(), "job", [&](std::size_t done) { most = std::max(most, done); });
   EXPECT_EQ(solution.states.size(), 2U);
   EXPECT_EQ(solution.failure, "");
   EXPECT_EQ(most, 1U);

@@ -38,27 +38,28 @@ TEST(ContinuumMaterial, SaysThatAdhesionIsLeftOut) {
   EXPECT_TRUE(contains(material.differences[0], "adhesion"));
 }
 
+/// hardening.toml with elastic constants and another exponent.
+CheckedScenario hardening(const std::string& exponent) {
+  return ready("hardening.toml", {"material.youngs_modulus='70 GPa'", "material.poisson_ratio=0.3",
+                                  "material.strength='100 MPa'", "material.hardening_exponent=" + exponent});
+}
+
 TEST(ContinuumMaterial, FollowsThePowerLawOfTheTotalStrain) {
-  const std::vector<std::string> constants{"material.youngs_modulus='70 GPa'", "material.poisson_ratio=0.3"};
-  const CheckedScenario scenario = ready("hardening.toml", constants);
-  const double strength = scenario.material.at("strength");
-  const double exponent = scenario.material.at("hardening_exponent");
-  const ContinuumMaterial material = continuum_material_of(scenario);
-  ASSERT_GT(material.flow.size(), 50U);
-  EXPECT_EQ(material.flow[0].plastic_strain, 0.0);
-  for (const auto& [strain, stress] : material.flow) {
-    EXPECT_NEAR(strength * std::pow(strain + stress / 70e9, exponent) / stress, 1.0, 1e-9) << strain;
-  }
-  for (std::size_t i = 1; i < material.flow.size(); ++i) {
-    EXPECT_GT(material.flow[i].plastic_strain, material.flow[i - 1].plastic_strain);
+  for (const std::string exponent : {"0", "0.1", "0.5", "0.8", "0.97"}) {
+    const ContinuumMaterial material = continuum_material_of(hardening(exponent));
+    ASSERT_GT(material.flow.size(), 50U) << exponent;
+    EXPECT_EQ(material.flow[0].plastic_strain, 0.0) << exponent;
+    for (std::size_t i = 1; i < material.flow.size(); ++i) {
+      const auto& [strain, stress] = material.flow[i];
+      EXPECT_NEAR(1e8 * std::pow(strain + stress / 70e9, std::stod(exponent)) / stress, 1.0, 1e-12) << exponent;
+      EXPECT_GT(strain, material.flow[i - 1].plastic_strain) << exponent;
+      EXPECT_GE(stress, material.flow[i - 1].stress) << exponent;
+    }
   }
 }
 
 TEST(ContinuumMaterial, OfAnIdeallyPlasticPowerLawHasItsStrength) {
-  const ContinuumMaterial material =
-      continuum_material_of(ready("hardening.toml", {"material.youngs_modulus='70 GPa'", "material.poisson_ratio=0.3",
-                                                     "material.hardening_exponent=0", "material.strength='100 MPa'"}));
-  for (const FlowPoint& point : material.flow) EXPECT_DOUBLE_EQ(point.stress, 100e6);
+  for (const FlowPoint& point : continuum_material_of(hardening("0")).flow) EXPECT_DOUBLE_EQ(point.stress, 100e6);
 }
 
 TEST(ContinuumMaterial, RefusesWhatIsNoElasticPlasticBody) {
@@ -67,10 +68,7 @@ TEST(ContinuumMaterial, RefusesWhatIsNoElasticPlasticBody) {
   };
   EXPECT_TRUE(contains(refused(ready("packing.toml")), "expected one of "));
   EXPECT_TRUE(contains(refused(ready("hardening.toml")), "expected youngs_modulus in [material]"));
-  EXPECT_TRUE(
-      contains(refused(ready("hardening.toml", {"material.youngs_modulus='70 GPa'", "material.poisson_ratio=0.3",
-                                                "material.hardening_exponent=1"})),
-               "exponent below 1"));
+  EXPECT_TRUE(contains(refused(hardening("1")), "exponent below 1"));
   EXPECT_TRUE(contains(refused(ready("nonlocal.toml", {"material.poisson_ratio=0.495"})), "at most 0.49"));
 }
 
@@ -130,6 +128,21 @@ TEST(RunContinuum, GivesEveryClassTheForceOfAWholeWallAndAddsUpTheWork) {
   // Six walls at once are one class, with the state of the walls on the axis.
   const ContinuumRun six = run_by(k_constant_forces, scenario, other);
   EXPECT_NEAR(six.run.record.history.column("axial.force")[1], 8.0 * 3.0 * unit, 1e-9);
+}
+
+TEST(RunContinuum, CountsAllRowsAsLoadingWhereTheProgramOnlyLoadsAfterAPause) {
+  const TemporaryFolder folder;
+  const CheckedScenario scenario = parse_scenario(
+      "model = 'cel'\n[particle]\nradius = 1\n[material]\nyoungs_modulus = 1e9\npoisson_ratio = 0.3\n"
+      "yield_stress = 5e7\n[loading]\nconfiguration = 'die'\nsteps = [{ hold = true, duration = 1 },\n"
+      "{ displacement = 0.1, duration = 1 }, { hold = true, duration = 1 }]\n[output]\npoints = 20\n",
+      "pause.toml");
+  const ContinuumRun result = run_by(k_constant_forces, scenario, folder);
+  ASSERT_EQ(result.differences.size(), 4U);
+  for (const ContinuumDifference& difference : result.differences) {
+    EXPECT_FALSE(std::isnan(difference.loading)) << difference.column;
+    EXPECT_TRUE(std::isnan(difference.unloading)) << difference.column;
+  }
 }
 
 TEST(RunContinuum, KeepsTheLimitAtWhichTheLawStops) {

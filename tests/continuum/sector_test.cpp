@@ -85,13 +85,13 @@ TEST(Sector, SeesTheWallsFromACentreThatMoves) {
   const Motion motion = motion_of_run(scenario);
   const Sector sector = sector_of(motion);
   EXPECT_TRUE(sector.is_axisymmetric);
-  EXPECT_EQ(sector.places, (std::vector<std::size_t>{0, 0}));
+  EXPECT_EQ(sector.sector_wall_of, (std::vector<std::size_t>{0, 0}));
   EXPECT_NEAR(motion.overlap(motion.walls[sector.walls[0].wall], motion.instants.back()), 0.1, 1e-9);
 }
 
 TEST(Sector, PutsEveryWallOfTheMotionInItsPlace) {
   const Motion motion = motion_of_run(mdr_scenario(Configuration::die, 50.0, 0.3, path({0.1})));
-  EXPECT_EQ(sector_of(motion).places, (std::vector<std::size_t>{0, 0, 1, 1, 1, 1}));
+  EXPECT_EQ(sector_of(motion).sector_wall_of, (std::vector<std::size_t>{0, 0, 1, 1, 1, 1}));
 }
 
 }  // namespace

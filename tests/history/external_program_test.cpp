@@ -2,7 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
 #include <csignal>
+#include <stdexcept>
+#include <string>
+#include <thread>
 
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
@@ -42,6 +49,34 @@ TEST_F(RunProgram, CallsBackUntilTheProgramEnds) {
   int calls = 0;
   EXPECT_EQ(run("sleep 0.25", [&calls] { ++calls; }), 0);
   EXPECT_GE(calls, 2);
+}
+
+TEST_F(RunProgram, RefusesALogThatExists) {
+  write_text(log(), "mine");
+  EXPECT_TRUE(contains(refusal<std::runtime_error>([&] { return run("true"); }), "cannot be started: File exists"));
+  EXPECT_EQ(read_text(log()), "mine");
+}
+
+TEST_F(RunProgram, EndsTheProgramWhereTheCallerGivesUp) {
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THROW(static_cast<void>(run("sleep 20", [] { throw std::domain_error("enough"); })), std::domain_error);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
+TEST_F(RunProgram, EndsTheProgramWithTheProcessThatCalledIt) {
+  const pid_t caller = fork();
+  if (caller == 0) {
+    static_cast<void>(run("echo $$ > process; exec sleep 20"));
+    _exit(0);
+  }
+  const std::filesystem::path process = log().parent_path() / "process";
+  while (read_text(process).empty()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  kill(caller, SIGKILL);
+  waitpid(caller, nullptr, 0);
+  const pid_t program = std::stoi(read_text(process));
+  const auto goes_on = [&] { return read_text("/proc/" + std::to_string(program) + "/cmdline").starts_with("sleep"); };
+  for (int i = 0; i < 200 && goes_on(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_FALSE(goes_on());
 }
 
 TEST(RunProgramThatIsMissing, IsAnErrorThatNamesIt) {
