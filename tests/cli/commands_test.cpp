@@ -711,7 +711,7 @@ TEST_F(Commands, CalibrateFitsTheReadyExample) {
   }
 }
 
-TEST_F(Commands, CalibrateComparesModels) {
+TEST_F(Commands, CalibrateComparesFits) {
   const std::string ready = MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/";
   // Without its modulus free the law is further from the data.
   write_text(path("fixed.toml"), "scenario = \"" MONOGRAIN_SOURCE_DIR "/scenarios/uniaxial.toml\"\n[data]\nfile = \"" +

@@ -1,5 +1,6 @@
 // `monograin continuum`, with CalculiX as it is installed.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,6 +28,14 @@ class ContinuumCommand : public CommandTest {
     return shell("PATH=\"$PWD/bin:$PATH\" $M continuum " + arguments);
   }
 };
+
+std::string scenario(const std::string& model, const std::string& radius, const std::string& material,
+                     const std::string& configuration, const std::string& step, int points) {
+  return fmt::format(
+      "model = '{}'\n[particle]\nradius = '{}'\n[material]\n{}[loading]\nconfiguration = '{}'\n[[loading.steps]]\n{}\n"
+      "duration = '1 s'\n[output]\npoints = {}\n",
+      model, radius, material, configuration, step, points);
+}
 
 /// Value of a column where another one has a value, linear between rows.
 double at(const Table& table, const std::string& x, double where, const std::string& y) {
@@ -76,10 +85,8 @@ TEST_F(ContinuumCommand, GivesTheCurveOfAFineMeshAndLeavesARun) {
 }
 
 TEST_F(ContinuumCommand, IsNearHertzUnderAnElasticParticle) {
-  write_text(path("hertz.toml"),
-             "model = 'hertz'\n[particle]\nradius = '1 mm'\n[material]\nyoungs_modulus = '3 GPa'\npoisson_ratio = 0.2\n"
-             "[loading]\nconfiguration = 'simple'\n[[loading.steps]]\ndisplacement = '0.01 R0'\nduration = '1 s'\n"
-             "[output]\npoints = 4\n");
+  write_text(path("hertz.toml"), scenario("hertz", "1 mm", "youngs_modulus = '3 GPa'\npoisson_ratio = 0.2\n", "simple",
+                                          "displacement = '0.01 R0'", 4));
   const Outcome outcome = monograin("continuum hertz.toml --mesh coarse --error");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(contains(outcome.out, "error of the elements")) << outcome.out;
@@ -95,10 +102,8 @@ TEST_F(ContinuumCommand, IsNearHertzUnderAnElasticParticle) {
 }
 
 TEST_F(ContinuumCommand, GivesTheForcesOfAFineMeshAtAllWallsOfADie) {
-  write_text(path("die.toml"),
-             "model = 'cel'\n[particle]\nradius = '10 mm'\n[material]\nyoungs_modulus = '1 GPa'\npoisson_ratio = 0.3\n"
-             "yield_stress = '50 MPa'\n[loading]\nconfiguration = 'die'\n[[loading.steps]]\ndisplacement = '0.03 R0'\n"
-             "duration = '1 s'\n[output]\npoints = 2\n");
+  const std::string material = "youngs_modulus = '1 GPa'\npoisson_ratio = 0.3\nyield_stress = '50 MPa'\n";
+  write_text(path("die.toml"), scenario("cel", "10 mm", material, "die", "displacement = '0.03 R0'", 2));
   const Outcome outcome = monograin("continuum die.toml --mesh coarse -o fe");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Table history = read_csv(path("fe/history.csv"));
