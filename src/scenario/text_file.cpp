@@ -73,6 +73,18 @@ class PartialFile {
   int descriptor_ = -1;
 };
 
+/// True for the name of a PartialFile: .PID-COUNT.partial
+[[nodiscard]] bool is_partial(const fs::path& name) {
+  const std::string numbers = name.stem().string();
+  if (!numbers.starts_with('.') || name.extension() != k_partial_extension) return false;
+  const auto is_number = [](std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  const std::size_t dash = std::min(numbers.find('-'), numbers.size() - 1);
+  return is_number(std::string_view(numbers).substr(1, dash - 1)) &&
+         is_number(std::string_view(numbers).substr(dash + 1));
+}
+
 FileText read_stream(std::istream& stream, std::size_t largest) {
   std::string text;
   std::array<char, 65536> chunk{};
@@ -130,9 +142,7 @@ void write_file_by_name(const fs::path& file, const std::function<void(const fs:
 void remove_partial_files(const fs::path& folder) {
   std::vector<fs::path> left;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    const bool has_number = name.size() > 1 && name[0] == '.' && name[1] >= '0' && name[1] <= '9';
-    if (has_number && entry.path().extension() == k_partial_extension) left.push_back(entry.path());
+    if (is_partial(entry.path().filename())) left.push_back(entry.path());
   }
   for (const fs::path& file : left) fs::remove(file);
 }

@@ -55,7 +55,7 @@ using TextSink = std::function<void(std::string_view part)>;
 void write_text_file(const std::filesystem::path& file, const std::function<void(const TextSink&)>& produce);
 
 /// Writes a file by a library that opens it by its name, completely or not at all.
-/// @param produce  writes the file under the hidden name that it gets, in the same folder, where an empty file is
+/// @param produce  fills the given hidden, empty file in the same folder
 /// @throws std::runtime_error naming the file and why it cannot be written, and what `produce` throws
 void write_file_by_name(const std::filesystem::path& file,
                         const std::function<void(const std::filesystem::path& hidden)>& produce);

@@ -125,14 +125,17 @@ TEST_F(SweepResults, OfAnotherSweepAreReplacedInWhateverFormat) {
 
 TEST_F(SweepResults, ReplaceWhatAKilledProcessHasWrittenInPart) {
   fs::create_directories(folder() / "out/histories");
-  for (const char* name : {".123-0.partial", "histories/.123-1.partial", "of-user.partial", ".user.partial"}) {
+  for (const char* name : {".123-0.partial", "histories/.123-1.partial", "of-user.partial", ".user.partial",
+                           ".2024-draft.partial", ".1-2-3.partial", ".7.partial"}) {
     write_text(folder() / "out" / name, "a part");
   }
   static_cast<void>(run(read(std::string("histories = true\n") + k_sweep), "out", ResultsFormat::hdf5));
   EXPECT_FALSE(fs::exists(folder() / "out/.123-0.partial"));
   EXPECT_FALSE(fs::exists(folder() / "out/histories/.123-1.partial"));
-  EXPECT_TRUE(fs::exists(folder() / "out/of-user.partial"));
-  EXPECT_TRUE(fs::exists(folder() / "out/.user.partial"));
+  for (const char* of_user :
+       {"of-user.partial", ".user.partial", ".2024-draft.partial", ".1-2-3.partial", ".7.partial"}) {
+    EXPECT_TRUE(fs::exists(folder() / "out" / of_user)) << of_user;
+  }
 }
 
 TEST_F(SweepResults, DoNotReplaceAFileOfTheUser) {
