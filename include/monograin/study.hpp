@@ -66,8 +66,8 @@ struct SweepResult {
 /// @throws std::invalid_argument for a source without file and text or with data, negative threads, another format, or
 ///         a shard that is not from 1 to the number of shards
 /// @throws std::runtime_error before any run if the folder holds a run, a calibration or a plan, or a file of the user
-///         with the name of one to write, or cannot be written, or if this build or this machine has no HDF5; after the
-///         runs for bands of columns that the histories do not have
+///         with the name of one to write, or cannot be written, or if this machine has no HDF5; after the runs
+///         for bands of columns that the histories do not have
 /// @throws RunInterrupted if the options end the sweep
 [[nodiscard]] SweepResult sweep(const Source& source, const SweepOptions& options = {});
 

@@ -4,9 +4,9 @@
 
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "api/checked.hpp"
-#include "figure/column_chart.hpp"
 #include "history/staged_folder.hpp"
 #include "history/table_file.hpp"
 #include "monograin/status.hpp"
@@ -54,8 +54,14 @@ NamedText text_without_data(const Source& source, std::string_view expected) {
 
 Sweep plan_of(const Source& source) { return parse_sweep(text_without_data(source, "a sweep file")); }
 
+/// A result without a table, and the file of the table; the name is empty while runs are missing.
+struct PlanResult {
+  SweepResult result;
+  fs::path table;
+};
+
 /// Does the runs of a sweep, or of its shard.
-SweepResult run_plan(const Sweep& plan, const SweepOptions& options) {
+PlanResult run_plan(const Sweep& plan, const SweepOptions& options) {
   check_threads(options.threads);
   if (options.shard < 1 || options.shard > options.shard_count) {
     throw std::invalid_argument(
@@ -66,25 +72,26 @@ SweepResult run_plan(const Sweep& plan, const SweepOptions& options) {
                      .results = {},
                      .warnings = plan.doubts,
                      .no_figure = {}};
-  const SweepOutcome outcome = run_sweep(
+  SweepOutcome outcome = run_sweep(
       plan, {.folder = result.folder,
              .threads = options.threads,
              .shard = {static_cast<std::size_t>(options.shard), static_cast<std::size_t>(options.shard_count)},
              .progress = [&](std::size_t, std::size_t) { end_if_asked(options.stop); },
              .format = results_format(options.format)});
   result.missing = outcome.runs_missing;
-  return result;
+  return {.result = std::move(result), .table = std::move(outcome.results)};
 }
 
 }  // namespace
 
 SweepResult sweep(const Source& source, const SweepOptions& options) {
   const Sweep plan = plan_of(source);
-  SweepResult result = run_plan(plan, options);
-  if (result.missing > 0) return result;
+  PlanResult done = run_plan(plan, options);
+  SweepResult& result = done.result;
+  if (result.missing > 0) return std::move(result);
   if (plan.bands) result.no_figure = write_bands(plan, bands_of(plan, result.folder), result.folder);
-  result.results = history_of(read_table_file(figure::recorded_table(result.folder)));
-  return result;
+  result.results = history_of(read_table_file(done.table));
+  return std::move(result);
 }
 
 SensitivityResult sensitivity(const Source& source, const SweepOptions& options, double confidence) {
@@ -92,8 +99,9 @@ SensitivityResult sensitivity(const Source& source, const SweepOptions& options,
   if (options.shard_count != 1) throw std::invalid_argument("shard: sensitivities take all runs of a sweep");
   const Sweep plan = plan_of(source);
   if (const std::string why_not = why_no_sensitivities(plan); !why_not.empty()) throw std::invalid_argument(why_not);
-  const fs::path folder = run_plan(plan, options).folder;
-  const std::vector<ResultSensitivity> found = sensitivities_of(plan, folder, confidence);
+  const auto [swept, table] = run_plan(plan, options);
+  const fs::path& folder = swept.folder;
+  const std::vector<ResultSensitivity> found = sensitivities_of(plan, table, confidence);
   const std::string no_figure = write_sensitivities(plan, found, folder);
   SensitivityResult result{.folder = folder,
                            .table = history_of(read_csv(folder / k_sensitivities_file)),

@@ -78,8 +78,7 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds) {
 
 /// Makes the runs of a sweep that are still missing, as far as they belong to the shard.
 /// @param options  without progress
-/// @return number of runs that are then still missing
-std::size_t run_all(const Sweep& plan, SweepOptions options, bool is_quiet = false) {
+SweepOutcome run_all(const Sweep& plan, SweepOptions options, bool is_quiet = false) {
   const auto start = std::chrono::steady_clock::now();
   const SweepOutcome outcome = [&] {
     ProgressBar bar("runs");
@@ -92,9 +91,9 @@ std::size_t run_all(const Sweep& plan, SweepOptions options, bool is_quiet = fal
     say("warning: {}: {} of {} runs refused, stopped or failed (columns status and reason)\n", plan.name,
         outcome.runs_ended_early, outcome.runs_now);
   }
-  if (is_quiet) return outcome.runs_missing;
+  if (is_quiet) return outcome;
   report(plan, outcome, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  return outcome.runs_missing;
+  return outcome;
 }
 
 int sweep(const SweepCommandOptions& options) {
@@ -111,7 +110,7 @@ int sweep(const SweepCommandOptions& options) {
                           .shard = shard,
                           .progress = {},
                           .format = results_format(options.format)};
-  if (run_all(plan, runs, options.is_quiet) > 0 || !plan.bands) return k_success;
+  if (run_all(plan, runs, options.is_quiet).runs_missing > 0 || !plan.bands) return k_success;
   const std::string no_figure = write_bands(plan, bands_of(plan, folder), folder);
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   if (!options.is_quiet) say("{}: bands -> {}\n", plan.name, (folder / "bands.csv").string());
@@ -134,8 +133,9 @@ int sensitivity(const SensitivityOptions& options) {
     throw UsageError(fmt::format("{}: {}", options.file, why_not));
   }
   const fs::path folder = folder_of(plan, options.output);
-  run_all(plan, {.folder = folder, .threads = options.threads, .shard = {}, .progress = {}});
-  const std::vector<ResultSensitivity> found = sensitivities_of(plan, folder, options.confidence);
+  const SweepOutcome outcome =
+      run_all(plan, {.folder = folder, .threads = options.threads, .shard = {}, .progress = {}});
+  const std::vector<ResultSensitivity> found = sensitivities_of(plan, outcome.results, options.confidence);
   const std::string no_figure = write_sensitivities(plan, found, folder);
   print_data("{}", sensitivity_text(plan, found));
   for (const ResultSensitivity& result : found) {

@@ -14,6 +14,7 @@
 #include "figure/page.hpp"
 #include "figure/run_curves.hpp"
 #include "history/table.hpp"
+#include "history/table_file.hpp"
 #include "scenario/units.hpp"
 #include "scenario/words.hpp"
 
@@ -23,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view k_history = "history.csv";
+constexpr std::array k_results_files{k_csv_results, k_hdf5_results};
 /// Columns of a sweep's results before and after those of its keys.
 constexpr std::string_view k_before_keys = "run";
 constexpr std::string_view k_after_keys = "status";
@@ -155,8 +157,9 @@ void add_event(std::vector<ChartSeries>& series, std::string_view event, double 
 
 bool is_sweep(const fs::path& path) {
   std::error_code ignored;
-  if (!fs::is_directory(path, ignored))
+  if (!fs::is_directory(path, ignored)) {
     return std::ranges::find(k_results_files, path.filename()) != k_results_files.end();
+  }
   return recorded_table(path).filename() != k_history;
 }
 

@@ -1,7 +1,6 @@
 /// Chart of one column of a table over another: histories of runs and results of sweeps.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -30,9 +29,6 @@ struct ColumnChart {
   ColumnAxis x;
   ColumnAxis y;
 };
-
-/// Names of the results in the folder of a sweep, as CSV and as HDF5.
-inline constexpr std::array<std::string_view, 2> k_results_files{"results.csv", "results.h5"};
 
 /// The file that a path of a run or of a sweep stands for: the history or the results in a folder, or the file itself.
 [[nodiscard]] std::filesystem::path recorded_table(const std::filesystem::path& path);

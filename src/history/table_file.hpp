@@ -17,6 +17,10 @@ namespace monograin {
 /// Ending of the names of HDF5 files.
 inline constexpr std::string_view k_hdf5_extension = ".h5";
 
+// Names of the results in the folder of a sweep.
+inline constexpr std::string_view k_csv_results = "results.csv";
+inline constexpr std::string_view k_hdf5_results = "results.h5";
+
 /// Reads a table: one written by write_hdf5() if the name ends with `.h5`, otherwise CSV.
 /// @throws std::runtime_error naming the file and what is wrong with it, as read_csv() and read_hdf5()
 [[nodiscard]] Table read_table_file(const std::filesystem::path& file, FileKind kind = FileKind::any);

@@ -16,6 +16,7 @@
 #include "api/ready.hpp"
 #include "monograin/run.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin::study {
 namespace {
@@ -56,6 +57,15 @@ TEST(StudySweep, HasTheSameResultsInWhateverFormatTheyAreWritten) {
   for (const char* name : {"material.yield_stress", "end.axial.force"}) {
     EXPECT_TRUE(std::ranges::equal(found.results[name], expected[name])) << name;
   }
+}
+
+TEST(StudySweep, IsReadFromItsOwnResultsBesideAFileOfTheUser) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "results.csv", "mine[N]\n1\n");
+  const SweepResult found =
+      sweep(yield_stresses("[\"30 MPa\", \"50 MPa\"]"), {.folder = folder.path(), .format = "hdf5"});
+  EXPECT_EQ(found.results.words("status").size(), 2U);
+  EXPECT_EQ(read_text(folder.path() / "results.csv"), "mine[N]\n1\n");
 }
 
 TEST(StudySweep, IsDoneInShardsAndGoesOnWhereItWasEnded) {

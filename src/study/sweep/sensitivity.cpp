@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "figure/chart.hpp"
-#include "figure/column_chart.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/page.hpp"
 #include "history/run.hpp"
@@ -211,8 +210,8 @@ std::string why_no_sensitivities(const Sweep& sweep) {
       sweep.design);
 }
 
-std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const fs::path& folder, double confidence) {
-  const Table results = read_table_file(figure::recorded_table(folder));
+std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const fs::path& file, double confidence) {
+  const Table results = read_table_file(file);
   std::vector<ResultSensitivity> found;
   for (const std::string& formula : sweep.results) {
     const std::vector<double> values = values_of(formula, results);

@@ -28,10 +28,10 @@ struct ResultSensitivity {
 [[nodiscard]] std::string why_no_sensitivities(const Sweep& sweep);
 
 /// @param sweep       of a design that gives sensitivities
-/// @param folder      of a sweep that has been run, with its results
+/// @param file        results of the sweep, as SweepOutcome names them
 /// @param confidence  level of the two-sided intervals, between 0 and 1
 /// @throws std::runtime_error for a formula that the columns cannot answer, with a remedy
-[[nodiscard]] std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const std::filesystem::path& folder,
+[[nodiscard]] std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const std::filesystem::path& file,
                                                               double confidence);
 
 /// Sensitivities as text for the terminal.

@@ -63,7 +63,7 @@ struct Outcome {
   return result;
 }
 
-/// Which values of a history become cells of results.csv, and their headings: final values, then extreme ones.
+/// Which values of a history become cells of the results, and their headings: final values, then extreme ones.
 struct Layout {
   std::vector<Column> columns;          ///< of the history
   std::vector<std::size_t> finals{};    ///< columns whose final value is a cell
@@ -246,6 +246,17 @@ void remove_leftovers(const Sweep& sweep, const fs::path& folder) {
   if (!sweep.keeps_histories && fs::is_empty(histories)) fs::remove(histories);
 }
 
+/// Removes what results of a sweep make superfluous: files of an earlier sweep, and the journals. These are removed
+/// last: where one is left, the process was killed in between, and the next call does the rest.
+void clean_up(const Sweep& sweep, const fs::path& folder) {
+  std::vector<fs::path> journals = journals_in(folder);
+  std::erase_if(journals, [&](const fs::path& file) { return !is_journal_of(file, sweep.digest); });
+  if (journals.empty()) return;
+  remove_other_results(sweep, folder);
+  remove_leftovers(sweep, folder);
+  for (const fs::path& file : journals) fs::remove(file);
+}
+
 /// Lock of the process that writes the results of a folder, so that no two do.
 class FolderLock {
  public:
@@ -369,13 +380,14 @@ fs::path folder_of(const Sweep& sweep, const fs::path& chosen) {
 }
 
 SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
-  const ResultsFormat format = options.format.value_or(ResultsFormat::csv);
+  const ResultsFormat format = options.format.value_or(format_in(options.folder));
   if (format == ResultsFormat::hdf5) expect_hdf5();
   prepare(options.folder, results_file(options.folder, format));
   SweepOutcome outcome;
   {
     const FolderLock lock(options.folder);
     if (const auto found = found_results(sweep, options.folder, options.format)) {
+      clean_up(sweep, options.folder);
       return {.runs_before = sweep.runs.size(), .results = *found};
     }
   }
@@ -393,16 +405,14 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   const FolderLock lock(options.folder);
   if (const auto found = found_results(sweep, options.folder, options.format)) {  // another shard has written them
     outcome.results = *found;
-    return outcome;
+  } else {
+    Rows rows(sweep, options.folder);
+    outcome.runs_missing = sweep.runs.size() - rows.count();
+    if (outcome.runs_missing > 0) return outcome;
+    outcome.results =
+        write_results(sweep, options.folder, format, [&rows](const TextSink& sink) { rows.for_each_line(sink); });
   }
-  Rows rows(sweep, options.folder);
-  outcome.runs_missing = sweep.runs.size() - rows.count();
-  if (outcome.runs_missing > 0) return outcome;
-  outcome.results =
-      write_results(sweep, options.folder, format, [&rows](const TextSink& sink) { rows.for_each_line(sink); });
-  remove_other_results(outcome.results);
-  remove_leftovers(sweep, options.folder);
-  for (const fs::path& file : journals_in(options.folder)) fs::remove(file);
+  clean_up(sweep, options.folder);
   return outcome;
 }
 

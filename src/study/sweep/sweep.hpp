@@ -23,8 +23,8 @@ struct SweepOptions {
   SweepShard shard;
   /// Called after every run with how many of this process's runs are done, and how many there are; one call at a time.
   std::function<void(std::size_t done, std::size_t of)> progress;
-  /// Format of the results; none: that of the results that are there, CSV if there are none. Results of this sweep in
-  /// another format are converted, and stay.
+  /// Format of the results; none: that of the results of any sweep in the folder, CSV if there are none. Results of
+  /// this sweep in another format are converted, and stay.
   std::optional<ResultsFormat> format{};
 };
 

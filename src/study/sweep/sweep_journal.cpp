@@ -64,6 +64,13 @@ void LinesDigest::add(std::string_view line) noexcept {
 
 std::string LinesDigest::word() const { return fmt::format("{:0{}x}", value_, k_digits); }
 
+bool is_journal_of(const fs::path& file, const std::string& digest) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string line;
+  std::getline(stream, line);
+  return payload_of(line) == fmt::format("{},{}", k_journal, digest);
+}
+
 SweepRecord::SweepRecord(const fs::path& file, const std::string& digest)
     : file_(file), stream_(file, std::ios::binary) {
   if (!stream_.is_open()) fail(file, "cannot be read");

@@ -24,6 +24,9 @@ class LinesDigest {
   std::uint64_t value_ = 0;
 };
 
+/// True for a journal of the sweep with this digest, whatever its rows; false for another file, and for none.
+[[nodiscard]] bool is_journal_of(const std::filesystem::path& file, const std::string& digest);
+
 /// Result of one run. Texts are as in the results: cells with commas between them, nothing quoted.
 struct SweepRow {
   std::size_t run = 0;     ///< from 1

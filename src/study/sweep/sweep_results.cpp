@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "figure/column_chart.hpp"
 #include "history/run.hpp"
 #include "scenario/words.hpp"
 #include "study/sweep/sweep_journal.hpp"
@@ -23,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view k_digest_line = "# sweep_digest: ";
 constexpr std::string_view k_rows_digest_line = "# rows_digest: ";
+constexpr std::array k_formats{ResultsFormat::csv, ResultsFormat::hdf5};
 constexpr std::size_t k_least_user_block = 512;  // [bytes], of the format HDF5
 
 /// Lines at the beginning of both formats.
@@ -50,11 +50,17 @@ struct Digests {
   return found;
 }
 
-/// Digest of the lines that are left; a file that is no text has lines between its bytes of that value.
+/// Digest of the rest, split at line feeds, also in binary files.
 [[nodiscard]] std::string digest_of_rest(std::istream& in) {
   LinesDigest digest;
   for (std::string line; std::getline(in, line);) digest.add(line);
   return digest.word();
+}
+
+/// Digest of the sweep whose results a file has; empty if the program has not written it.
+[[nodiscard]] std::string sweep_digest_in(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return skip_header(in).sweep;
 }
 
 /// True if a file has results of this sweep.
@@ -118,10 +124,11 @@ void write_as_hdf5(const Sweep& sweep, const fs::path& file, const TableLines& l
     stream << std::string(block - length, '\n');
     stream.seekg(static_cast<std::streamoff>(length));
     const std::string digest = digest_of_rest(stream);
+    const bool is_read = stream.eof() && !stream.bad();
     stream.clear();
     stream.seekp(0);
     stream << header_of(sweep, digest) << std::flush;
-    if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
+    if (!is_read || !stream) throw std::runtime_error(file.string() + ": cannot be written");
   });
 }
 
@@ -154,12 +161,18 @@ std::optional<ResultsFormat> results_format(std::string_view name) {
 }
 
 fs::path results_file(const fs::path& folder, ResultsFormat format) {
-  return folder / figure::k_results_files.at(static_cast<std::size_t>(format));
+  return folder / (format == ResultsFormat::csv ? k_csv_results : k_hdf5_results);
+}
+
+ResultsFormat format_in(const fs::path& folder) {
+  const auto found = std::ranges::find_if(
+      k_formats, [&](ResultsFormat format) { return !sweep_digest_in(results_file(folder, format)).empty(); });
+  return found == k_formats.end() ? ResultsFormat::csv : *found;
 }
 
 std::optional<fs::path> found_results(const Sweep& sweep, const fs::path& folder, std::optional<ResultsFormat> wanted) {
   std::optional<fs::path> found;
-  for (const ResultsFormat format : {ResultsFormat::csv, ResultsFormat::hdf5}) {
+  for (const ResultsFormat format : k_formats) {
     const fs::path file = results_file(folder, format);
     if (has_results(sweep, file) && (!found || format == wanted)) found = file;
   }
@@ -176,11 +189,11 @@ fs::path write_results(const Sweep& sweep, const fs::path& folder, ResultsFormat
   return file;
 }
 
-void remove_other_results(const fs::path& results) {
-  for (const std::string_view name : figure::k_results_files) {
-    const fs::path file = results.parent_path() / name;
-    std::ifstream in(file, std::ios::binary);
-    if (file != results && !skip_header(in).sweep.empty()) fs::remove(file);
+void remove_other_results(const Sweep& sweep, const fs::path& folder) {
+  for (const ResultsFormat format : k_formats) {
+    const fs::path file = results_file(folder, format);
+    const std::string digest = sweep_digest_in(file);
+    if (!digest.empty() && digest != sweep.digest) fs::remove(file);
   }
 }
 

@@ -13,9 +13,8 @@
 
 namespace monograin {
 
-/// Formats in the order in which their files are searched: results.csv, results.h5 (figure::k_results_files).
 enum class ResultsFormat : std::size_t { csv, hdf5 };
-/// Names that users give them.
+/// Names that users give the formats, in their order.
 inline constexpr std::array<std::string_view, 2> k_results_formats{"csv", "hdf5"};
 
 /// Format of a name; none if the name is empty. @throws std::invalid_argument for another name
@@ -23,8 +22,11 @@ inline constexpr std::array<std::string_view, 2> k_results_formats{"csv", "hdf5"
 
 [[nodiscard]] std::filesystem::path results_file(const std::filesystem::path& folder, ResultsFormat format);
 
+/// Format of the results, of whatever sweep, that the program has written in a folder; CSV if there are none.
+[[nodiscard]] ResultsFormat format_in(const std::filesystem::path& folder);
+
 /// Finds the results of a sweep in a folder, and converts them with write_results() if they are in another format than
-/// the wanted one.
+/// the wanted one. Those in HDF5 are then all in memory.
 /// @param wanted  none: any format
 /// @return their file; none if the folder has no results of this sweep
 /// @throws std::runtime_error if the folder has results, of this or another sweep, that were changed after they were
@@ -41,9 +43,8 @@ inline constexpr std::array<std::string_view, 2> k_results_formats{"csv", "hdf5"
 [[nodiscard]] std::filesystem::path write_results(const Sweep& sweep, const std::filesystem::path& folder,
                                                   ResultsFormat format, const TableLines& lines);
 
-/// Removes results of an earlier sweep in the other format, but no other file of that name.
-/// @param results  the file of the new results
-void remove_other_results(const std::filesystem::path& results);
+/// Removes results of other sweeps in any format, but no file that the program has not written.
+void remove_other_results(const Sweep& sweep, const std::filesystem::path& folder);
 
 /// Runs as a CSV table, which `design = "table"` reads back bit by bit.
 [[nodiscard]] std::string design_text(const Sweep& sweep);

@@ -10,6 +10,7 @@
 #include "history/table_file.hpp"
 #include "study/sweep/sweep.hpp"
 #include "study/sweep/sweep_file_test.hpp"
+#include "study/sweep/sweep_journal.hpp"
 #include "support/refusal.hpp"
 #include "support/text_file.hpp"
 
@@ -119,8 +120,41 @@ TEST_F(SweepResults, OfAnotherSweepAreReplacedInWhateverFormat) {
   static_cast<void>(run(sweep_, "out", ResultsFormat::csv));
   EXPECT_EQ(run(other, "out", ResultsFormat::hdf5).runs_now, 15U);
   EXPECT_FALSE(fs::exists(folder() / "out/results.csv"));
-  EXPECT_EQ(run(sweep_, "out", ResultsFormat::csv).runs_now, 15U);
+  EXPECT_EQ(run(sweep_, "out", {}).results, folder() / "out/results.h5") << "the format of those that were there";
+  EXPECT_EQ(run(other, "out", ResultsFormat::csv).runs_now, 15U);
   EXPECT_FALSE(fs::exists(folder() / "out/results.h5"));
+}
+
+TEST_F(SweepResults, AreAloneAfterACallThatWasKilledBeforeItRemovedTheRest) {
+  const Sweep other = read(std::string("histories = true\ncolumns = [\"end.axial.force\"]\n") + k_sweep);
+  static_cast<void>(run(other, "out", ResultsFormat::csv));
+  const std::string earlier = bytes("out/results.csv");
+  fs::copy(folder() / "out/histories", folder() / "histories");
+  static_cast<void>(run(sweep_, "out", ResultsFormat::hdf5));
+  const std::string results = bytes("out/results.h5");
+  // The folder as it is between the writing of results and the removal of what they make superfluous.
+  write_text(folder() / "out/results.csv", earlier);
+  write_text(folder() / "out/bands.csv", "# sweep: s\n");
+  fs::copy(folder() / "histories", folder() / "out/histories");
+  { const SweepJournal journal(folder() / "out/sweep.journal", sweep_.digest); }
+  const SweepOutcome again = run(sweep_, "out", ResultsFormat::hdf5);
+  EXPECT_EQ(again.runs_now, 0U);
+  EXPECT_EQ(again.results, folder() / "out/results.h5");
+  EXPECT_EQ(bytes("out/results.h5"), results);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder() / "out"), {}), 1) << "results.h5 alone";
+}
+
+TEST_F(SweepResults, KeepWhatWasMadeFromThemWhenTheyAreConverted) {
+  static_cast<void>(run(sweep_, "out", ResultsFormat::csv));
+  write_text(folder() / "out/sensitivity.csv", "# sweep: s\n");
+  static_cast<void>(run(sweep_, "out", ResultsFormat::hdf5));
+  EXPECT_TRUE(fs::exists(folder() / "out/sensitivity.csv"));
+  // A call that was killed after a conversion removes neither format.
+  { const SweepJournal journal(folder() / "out/sweep.journal", sweep_.digest); }
+  static_cast<void>(run(sweep_, "out", {}));
+  EXPECT_TRUE(fs::exists(folder() / "out/results.csv"));
+  EXPECT_TRUE(fs::exists(folder() / "out/results.h5"));
+  EXPECT_FALSE(fs::exists(folder() / "out/sweep.journal"));
 }
 
 TEST_F(SweepResults, ReplaceWhatAKilledProcessHasWrittenInPart) {
