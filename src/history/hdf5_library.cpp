@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <atomic>
 #include <stdexcept>
 
 #include "history/table_file.hpp"
@@ -19,12 +20,13 @@ namespace {
                   dlerror()));
 }
 
+std::atomic<bool> leaves_files_at_exit = false;
+
 /// The library, loaded by the first call and kept.
 [[nodiscard]] const Hdf5Library& loaded_library() {
   static const Hdf5Library library = [] {
     Hdf5Library loaded;
-    // At the end of the process the library would close files again whose closing has failed, and crash.
-    loaded.H5dont_atexit();
+    if (leaves_files_at_exit) loaded.H5dont_atexit();
     return loaded;
   }();
   return library;
@@ -48,6 +50,8 @@ Hdf5Library::Symbol Hdf5Library::symbol(const char* name) const {
   return {address};
 }
 
+void leave_hdf5_files_at_exit() { leaves_files_at_exit = true; }
+
 void expect_hdf5() { static_cast<void>(loaded_library()); }
 
 Hdf5Calls::Hdf5Calls(std::filesystem::path file, std::string_view problem)
@@ -56,11 +60,15 @@ Hdf5Calls::Hdf5Calls(std::filesystem::path file, std::string_view problem)
   library.H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // nothing is printed by the library
 }
 
-Hdf5Object Hdf5Calls::text_type(std::size_t bytes) const {
+Hdf5Object Hdf5Calls::text_type(std::size_t bytes) const { return text_type(bytes, H5T_STR_NULLPAD); }
+
+Hdf5Object Hdf5Calls::variable_text_type() const { return text_type(H5T_VARIABLE, H5T_STR_NULLTERM); }
+
+Hdf5Object Hdf5Calls::text_type(std::size_t bytes, H5T_str_t padding) const {
   Hdf5Object type = object(library.H5Tcopy(*library.text));
-  check(library.H5Tset_size(type, bytes == 0 ? H5T_VARIABLE : bytes));
+  check(library.H5Tset_size(type, bytes));
   check(library.H5Tset_cset(type, H5T_CSET_UTF8));
-  check(library.H5Tset_strpad(type, bytes == 0 ? H5T_STR_NULLTERM : H5T_STR_NULLPAD));
+  check(library.H5Tset_strpad(type, padding));
   return type;
 }
 
@@ -71,7 +79,7 @@ Hdf5Object Hdf5Calls::unlocked_access() const {
 }
 
 void Hdf5Calls::add_text(hid_t owner, const char* name, const std::string& text) const {
-  const Hdf5Object type = text_type(0);
+  const Hdf5Object type = variable_text_type();
   const Hdf5Object space = object(library.H5Screate(H5S_SCALAR));
   const Hdf5Object attribute = object(library.H5Acreate2(owner, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
   const char* const begin = text.c_str();
@@ -82,7 +90,7 @@ std::string Hdf5Calls::text_at(hid_t owner, const char* name) const {
   const Hdf5Object attribute = object(library.H5Aopen(owner, name, H5P_DEFAULT));
   const Hdf5Object space = object(library.H5Aget_space(attribute));
   if (library.H5Sget_simple_extent_npoints(space) != 1) fail(fmt::format("attribute {} is not one text", name));
-  const Hdf5Object type = text_type(0);
+  const Hdf5Object type = variable_text_type();
   char* begin = nullptr;
   check(library.H5Aread(attribute, type, &begin));
   std::string text(begin == nullptr ? "" : begin);
@@ -97,7 +105,7 @@ void Hdf5Calls::fail(std::string_view reason) const {
 std::string Hdf5Calls::reason() const {
   std::string text;
   library.H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &text);
-  // Where the system refuses, its own words stand among times, addresses and sizes.
+  // Errors of the system: only the text of errno.
   constexpr std::string_view k_before = "error message = '";
   const std::size_t begin = text.find(k_before);
   if (begin == std::string::npos) return text.empty() ? "the library of HDF5 gives no reason" : text;

@@ -1,6 +1,6 @@
 /// The library of HDF5, loaded when the first file of that format is written or read.
 ///
-/// The program is not linked with it: with all that it stands on, it would add its time of loading to every start.
+/// The program is not linked with it: with all that it depends on, it would add its time of loading to every start.
 #pragma once
 
 #include <hdf5.h>
@@ -132,8 +132,10 @@ class Hdf5Calls {
   }
   /// The object that a call has opened. @throws std::runtime_error as check()
   [[nodiscard]] Hdf5Object object(hid_t id) const { return {library, check(id)}; }
-  /// Text of fixed length. @param bytes  0: of the length of each text, for attributes
+  /// Text of fixed length [bytes], for cells.
   [[nodiscard]] Hdf5Object text_type(std::size_t bytes) const;
+  /// Text of the length of each, for attributes.
+  [[nodiscard]] Hdf5Object variable_text_type() const;
   /// Access to a file without a lock, which some network file systems refuse.
   [[nodiscard]] Hdf5Object unlocked_access() const;
   /// Adds an attribute to a file or a dataset.
@@ -143,6 +145,7 @@ class Hdf5Calls {
   [[noreturn]] void fail(std::string_view reason) const;
 
  private:
+  [[nodiscard]] Hdf5Object text_type(std::size_t bytes, H5T_str_t padding) const;
   [[nodiscard]] std::string reason() const;
 
   std::unique_lock<std::mutex> lock_;

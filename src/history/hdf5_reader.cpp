@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 /// Part of a column that is read at once [bytes].
 constexpr std::size_t k_bytes_of_block = std::size_t{1} << 17U;
 // Bounds of files that are read, which may claim any size: cells, and bytes of a word.
-constexpr std::size_t k_most_cells = 1'000'000'000;
+constexpr std::size_t k_most_stored_cells = 1'000'000'000;
 constexpr std::size_t k_longest_word = std::size_t{1} << 20U;
 
 /// A dataset of a column. Words are read at once, numbers block by block.
@@ -30,9 +30,13 @@ class ColumnReader {
     const Hdf5Object space = calls.object(hdf5.H5Dget_space(dataset_));
     if (hdf5.H5Sget_simple_extent_ndims(space) != 1) calls.fail("a dataset has not one dimension");
     rows_ = static_cast<std::size_t>(calls.check(hdf5.H5Sget_simple_extent_npoints(space)));
-    if (rows_ > k_most_cells) calls.fail("a dataset is too large; expected at most 1000 million cells");
     column_ = {.name = calls.text_at(dataset_, "name"), .unit = calls.text_at(dataset_, "unit")};
-    const Hdf5Object type = calls.object(hdf5.H5Dget_type(dataset_));
+  }
+
+  /// To be called first; apart, so that the size of the whole table is known before.
+  void read_words() {
+    const Hdf5Library& hdf5 = calls_->library;
+    const Hdf5Object type = calls_->object(hdf5.H5Dget_type(dataset_));
     if (hdf5.H5Tget_class(type) == H5T_STRING) read_words(hdf5.H5Tget_size(type));
   }
 
@@ -59,7 +63,7 @@ class ColumnReader {
   }
 
   void read_words(std::size_t bytes) {
-    if (bytes > k_longest_word) calls_->fail("a dataset has words of more than 1 MiB");
+    if (bytes == 0 || bytes > k_longest_word) calls_->fail("a dataset has other words than of 1 byte to 1 MiB");
     const Hdf5Object type = calls_->text_type(bytes);
     const std::size_t rows_of_block = std::max<std::size_t>(k_bytes_of_block / bytes, 1);
     std::unordered_map<std::string, std::size_t> indices;
@@ -118,16 +122,17 @@ Table read_hdf5(const fs::path& file) {
   const Hdf5Object whole = calls.object(calls.library.H5Fopen(file.c_str(), H5F_ACC_RDONLY, access));
   std::vector<ColumnReader> columns;
   add_columns(calls, whole, true, columns);
-  std::vector<Column> descriptions;
-  for (const ColumnReader& column : columns) {
-    descriptions.push_back(column.column());
-    if (column.rows() != columns.front().rows()) calls.fail("its datasets have different lengths");
-  }
   if (columns.empty()) calls.fail("it has no dataset");
+  const std::size_t rows = columns.front().rows();
+  if (rows > k_most_stored_cells / columns.size()) calls.fail("it is too large; expected at most 1000 million cells");
+  std::vector<Column> descriptions;
+  for (ColumnReader& column : columns) {
+    if (column.rows() != rows) calls.fail("its datasets have different lengths");
+    column.read_words();
+    descriptions.push_back(column.column());
+  }
   Table table(std::move(descriptions));
   table.header = header_of(file);
-  const std::size_t rows = columns.front().rows();
-  if (rows > k_most_cells / columns.size()) calls.fail("it is too large; expected at most 1000 million cells");
   table.reserve_rows(rows);
   std::vector<std::vector<double>> block(columns.size());
   std::vector<double> row(columns.size());

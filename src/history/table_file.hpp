@@ -25,9 +25,15 @@ inline constexpr std::string_view k_hdf5_results = "results.h5";
 /// @throws std::runtime_error naming the file and what is wrong with it, as read_csv() and read_hdf5()
 [[nodiscard]] Table read_table_file(const std::filesystem::path& file, FileKind kind = FileKind::any);
 
-/// Refuses to begin what ends with an HDF5 file that cannot be written.
-/// @throws std::runtime_error with a remedy if this build has no HDF5, or its library is not installed
+/// Checks that HDF5 can be used; call it before a long computation.
+/// @throws std::runtime_error with a remedy if its library is not installed
 void expect_hdf5();
+
+/// Leaves it to the system to close HDF5 files that are open when the process ends. To be called before any use of
+/// HDF5, by a program that uses it through this header only: files that others have left open would lose data.
+///
+/// Without this call the library closes such files, and crashes if one could not be written before.
+void leave_hdf5_files_at_exit();
 
 /// Passes the lines of a table to a sink, without ends of lines: the row of headings, then the rows, as csv_text()
 /// prints them. It may be called more than once.
@@ -45,14 +51,14 @@ struct Hdf5Frame {
 ///
 /// Datasets have one dimension, the rows, in compressed chunks. Numbers are doubles, bitwise those of the lines; words
 /// are UTF-8 texts of fixed length, filled up with zeros. The name of a dataset is that of its column, with `:` for
-/// `/`, which separates groups. The rows are never all in memory, and equal lines give equal bytes.
+/// `/`, which separates groups. A chunk of each column is in memory at a time, and equal lines give equal bytes.
 /// @param file  is replaced
 /// @throws std::runtime_error naming the file and why it cannot be written; a partly written file then stays
 /// @throws std::invalid_argument for lines whose numbers of cells differ, and for a cell that is no number in a column
 ///         with a unit
 void write_hdf5(const std::filesystem::path& file, const Hdf5Frame& frame, const TableLines& lines);
 
-/// Reads a table from a file of write_hdf5(), with lines `# key: value` at its beginning as the header.
+/// Reads a whole table from a file of write_hdf5(), with lines `# key: value` at its beginning as the header.
 /// @throws std::runtime_error naming the file and why it cannot be read: among others, more than 1000 million cells
 [[nodiscard]] Table read_hdf5(const std::filesystem::path& file);
 

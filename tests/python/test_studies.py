@@ -5,8 +5,11 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import subprocess
+import sys
 import tomllib
 
+import h5py
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -44,7 +47,6 @@ def test_results_in_hdf5_are_those_in_csv(tmp_path):
 
 
 def test_results_in_hdf5_are_read_by_h5py(tmp_path):
-    h5py = pytest.importorskip("h5py")
     scenario = (mg.scenario_folder() / "die.toml").as_posix()
     plan = {"scenario": scenario, "vary": {"loading.configuration": {"values": ["simple", "die"]}}}
     table = mg.sweep(plan, tmp_path, format="hdf5")
@@ -58,6 +60,31 @@ def test_results_in_hdf5_are_read_by_h5py(tmp_path):
         assert list(file["outputs"]) == table.columns[4:]
         assert file.attrs["design"] == "grid"
         assert file.attrs["scenario_text"] == (mg.scenario_folder() / "die.toml").read_text(encoding="utf-8")
+
+
+def test_a_table_in_hdf5_that_claims_too_many_cells_is_refused(tmp_path):
+    with h5py.File(tmp_path / "large.h5", "w", track_order=True) as file:
+        for name in ("a", "b"):  # nothing of them is stored
+            column = file.create_dataset(name, shape=600_000_000, dtype="S1", chunks=(1 << 17,))
+            column.attrs.update(name=name, unit="")
+    with pytest.raises(RuntimeError, match="it is too large; expected at most 1000 million cells"):
+        mg.Table.read_hdf5(tmp_path / "large.h5")
+
+
+def test_an_open_file_of_h5py_is_complete_after_a_sweep(tmp_path):
+    scenario = (mg.scenario_folder() / "die.toml").as_posix()
+    plan = {"scenario": scenario, "vary": {"loading.configuration": {"values": ["simple", "die"]}}}
+    program = f"""
+import monograin as mg
+mg.sweep({plan!r}, {str(tmp_path / "out")!r}, format="hdf5")
+import h5py
+file = h5py.h5f.create({str(tmp_path / "open.h5")!r}.encode())
+h5py.h5g.create(file, b"a")
+h5py.h5i.inc_ref(file)  # not closed before the process ends
+"""
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
+    with h5py.File(tmp_path / "open.h5") as file:
+        assert list(file) == ["a"]
 
 
 def test_bands_of_a_sweep_are_those_of_the_program(run_program, tmp_path):
