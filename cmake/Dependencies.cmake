@@ -1,8 +1,8 @@
 # Finds every library; a missing one is reported with the Debian package that brings it.
 
-# A header-only library that ships no CMake package.
+# A header of a library that ships no CMake package. Further arguments: folders below those of the system.
 function(monograin_require_header target header debian_package)
-  find_path(${target}_INCLUDE_DIR ${header})
+  find_path(${target}_INCLUDE_DIR ${header} PATH_SUFFIXES ${ARGN})
   if(NOT ${target}_INCLUDE_DIR)
     message(FATAL_ERROR "<${header}> was not found. On Debian: apt-get install ${debian_package} (or run tools/install-deps).")
   endif()
@@ -31,11 +31,17 @@ endif()
 if(MONOGRAIN_HAS_STUDIES)
   monograin_find(ALGLIB libalglib-dev)
 endif()
-# The library of HDF5 is loaded by its name when a file of that format is written or read: linked, it would make every
-# start of the program longer. A build without its header refuses that format.
-find_path(MONOGRAIN_HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial)
+# The library of HDF5 is loaded when a file of that format is written or read, by the name under which the loader finds
+# it, such as libhdf5_serial.so.103: linked, it would make every start of the program longer.
+monograin_require_header(monograin_hdf5 hdf5.h libhdf5-dev hdf5/serial)
 find_library(MONOGRAIN_HDF5_LIBRARY NAMES hdf5_serial hdf5)
-mark_as_advanced(MONOGRAIN_HDF5_INCLUDE_DIR MONOGRAIN_HDF5_LIBRARY)
+mark_as_advanced(MONOGRAIN_HDF5_LIBRARY)
+file(REAL_PATH "${MONOGRAIN_HDF5_LIBRARY}" hdf5_library)
+string(REGEX MATCH "[^/]+\\.so\\.[0-9]+" hdf5_library "${hdf5_library}")
+if(NOT hdf5_library)
+  message(FATAL_ERROR "The shared library of HDF5 was not found. On Debian: apt-get install libhdf5-dev (or run tools/install-deps).")
+endif()
+target_compile_definitions(monograin_hdf5 INTERFACE MONOGRAIN_HDF5_LIBRARY="${hdf5_library}")
 monograin_require_header(monograin_xxhash xxhash.h libxxhash-dev)
 target_compile_definitions(monograin_xxhash INTERFACE XXH_INLINE_ALL)
 if(MONOGRAIN_BUILD_TESTS)
