@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -92,7 +93,10 @@ int run_command(const ContinuumCommand& command) {
   write_text_file(staged.path() / k_run_marker, continuum_json(result, command.mesh));
   staged.publish(staged.age());
 
-  for (const std::string& warning : record.warnings) say("warning: {}\n", warning);
+  // The differences of the material were printed before CalculiX began.
+  for (const std::string& warning : std::span(record.warnings).subspan(material.differences.size())) {
+    say("warning: {}\n", warning);
+  }
   print_differences(result, command.estimates_error);
   say("{}: {}, {} elements, {} rows -> {}\n", scenario.name, to_string(record.status), result.elements,
       record.history.row_count(), folder.string());

@@ -85,9 +85,9 @@ class CalculixInput {
     for (std::size_t i = 0; i < problem_.sector.walls.size(); ++i) add_wall(i, areas);
     add_symmetry();
     WallOverlaps last(problem_.sector.walls.size(), 0.0);
-    for (const WallOverlaps& positions : problem_.instants) {
-      add_step(last, positions);
-      last = positions;
+    for (const WallOverlaps& overlaps : problem_.instants) {
+      add_step(last, overlaps);
+      last = overlaps;
     }
     return std::move(text_);
   }
@@ -198,20 +198,20 @@ class CalculixInput {
     text_ += fixed;
   }
 
-  void add_step(const WallOverlaps& before, const WallOverlaps& positions) {
+  void add_step(const WallOverlaps& before, const WallOverlaps& overlaps) {
     double motion = 0.0;
-    for (std::size_t i = 0; i < positions.size(); ++i) motion = std::fmax(motion, std::abs(positions[i] - before[i]));
+    for (std::size_t i = 0; i < overlaps.size(); ++i) motion = std::fmax(motion, std::abs(overlaps[i] - before[i]));
     const double element = 0.5 * std::numbers::pi / static_cast<double>(mesh_.surface.front().size() - 1);
     const double first = motion > 0.0 ? std::fmin(k_first_increment * element / motion, 1.0) : 1.0;
     add("*STEP, NLGEOM, INC={}\n*STATIC, SOLVER=SPOOLES\n{:.6g},1.,1e-6,1.", k_most_increments, first);
     text_ += k_controls;
     add("*BOUNDARY");
-    for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t i = 0; i < overlaps.size(); ++i) {
       const int direction = problem_.sector.walls[i].axis + 1;
-      add("{},{},{},{:.12g}", wall_set(i), direction, direction, -k_radius * positions[i]);
+      add("{},{},{},{:.12g}", wall_set(i), direction, direction, -k_radius * overlaps[i]);
     }
     add("*NODE PRINT, NSET=SURFACE, FREQUENCY={}\nU", k_most_increments);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t i = 0; i < overlaps.size(); ++i) {
       add("*NODE PRINT, NSET={}, TOTALS=ONLY, FREQUENCY={}\nRF", wall_set(i), k_most_increments);
     }
     add("*END STEP");

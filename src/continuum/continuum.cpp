@@ -138,9 +138,9 @@ class ParticleElements {
       : motion_(motion), problem_{.sector = sector, .mesh = {}, .material = material, .instants = {}} {
     problem_.mesh = sector_mesh(size, problem_.sector.angle);
     for (const std::size_t i : instants) {
-      WallOverlaps& positions = problem_.instants.emplace_back();
+      WallOverlaps& overlaps = problem_.instants.emplace_back();
       for (const SectorWall& wall : problem_.sector.walls) {
-        positions.push_back(motion.overlap(motion.walls[wall.wall], motion.instants[i]) / motion.initial_radius);
+        overlaps.push_back(motion.overlap(motion.walls[wall.wall], motion.instants[i]) / motion.initial_radius);
       }
     }
     wall_of_class_.assign(motion.classes.size(), problem_.sector.walls.size());
@@ -174,17 +174,17 @@ class ParticleElements {
     return {.nodes = nodes, .longitudes = problem_.mesh.surface.size()};
   }
 
-  [[nodiscard]] ParticleState state_of(const SectorState& sector, const WallOverlaps& positions) const {
+  [[nodiscard]] ParticleState state_of(const SectorState& sector, const WallOverlaps& overlaps) const {
     const double radius = motion_.initial_radius;
     const SectorSurface surface = surface_of(sector.surface);
     ParticleState state{.volume = sphere_volume(radius) * volume_below(surface) / initial_volume_,
                         .classes = std::vector<ClassState>(motion_.classes.size())};
     std::vector<ClassState> contacts;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t i = 0; i < overlaps.size(); ++i) {
       const SectorWall& wall = problem_.sector.walls[i];
       const double scale = wall.multiplicity * radius * radius;
       contacts.push_back({.force = scale * problem_.material.youngs_modulus * sector.forces[i],
-                          .area = scale * contact_area(surface, wall.axis, 1.0 - positions[i])});
+                          .area = scale * contact_area(surface, wall.axis, 1.0 - overlaps[i])});
     }
     for (std::size_t c = 0; c < state.classes.size(); ++c) state.classes[c] = contacts[wall_of_class_[c]];
     return state;
@@ -371,6 +371,7 @@ ContinuumRun run_continuum(const Run& law, const ContinuumOptions& options) {
   result.run.classes = law.classes;
   result.solver = calculix_version(options.ccx, options.folder);
   RunRecord& record = result.run.record;
+  record.warnings = material.differences;
   if (const double apart = largest_motion(motion, instants); apart > k_coarse_motion) {
     record.warnings.push_back(
         fmt::format("rows of the run are up to {:.2g} R0 apart, and the walls move straight between "

@@ -153,6 +153,13 @@ TEST(RunContinuum, KeepsTheLimitAtWhichTheLawStops) {
   EXPECT_TRUE(stopped.run.record.limit);
 }
 
+TEST(RunContinuum, RecordsWhatTheMaterialLacks) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> warnings = run_by("", ready("adhesion.toml"), folder).run.record.warnings;
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_TRUE(contains(warnings[0], "adhesion")) << warnings[0];
+}
+
 TEST(RunContinuum, WarnsWhereRowsOfTheRunAreFarApart) {
   const TemporaryFolder folder;
   const ContinuumRun coarse = run_by("", ready("cel.toml", {"output.points=5"}), folder);
