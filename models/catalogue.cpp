@@ -130,6 +130,14 @@ const Model* find_model(std::string_view name) noexcept {
   return found == models.end() ? nullptr : &*found;
 }
 
+std::vector<std::string_view> names_of_models(bool (*has_property)(const Model&)) {
+  std::vector<std::string_view> names;
+  for (const Model& model : model_catalogue()) {
+    if (has_property(model)) names.push_back(model.name);
+  }
+  return names;
+}
+
 std::span<const FormulaFunction> formula_functions() noexcept { return k_functions; }
 
 }  // namespace monograin

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "system/model.hpp"
 
@@ -23,6 +24,9 @@ void add_model(const Model& model);
 
 /// The entry of that name, or nullptr.
 [[nodiscard]] const Model* find_model(std::string_view name) noexcept;
+
+/// Names of the models with a property, in the order of the list.
+[[nodiscard]] std::vector<std::string_view> names_of_models(bool (*has_property)(const Model&));
 
 /// Law with a single value that no formula expresses. Definitions of figures may use it by its name.
 struct FormulaFunction {

@@ -329,10 +329,7 @@ std::vector<std::pair<std::string, std::string>> header_of(const Run& law, const
 ContinuumMaterial continuum_material_of(const CheckedScenario& scenario) {
   const Model& model = *find_model(scenario.model);
   if (model.continuum_material == nullptr) {
-    std::vector<std::string_view> names;
-    for (const Model& other : model_catalogue()) {
-      if (other.continuum_material != nullptr) names.push_back(other.name);
-    }
+    const auto names = names_of_models([](const Model& other) { return other.continuum_material != nullptr; });
     throw std::invalid_argument(fmt::format("model {} has no material for finite elements; expected one of {}",
                                             scenario.model, fmt::join(names, ", ")));
   }

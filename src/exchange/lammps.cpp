@@ -235,10 +235,7 @@ class LammpsInput {
 LammpsLaw lammps_law_of(const CheckedScenario& scenario) {
   const Model& model = *find_model(scenario.model);
   if (model.lammps_law != nullptr) return model.lammps_law(model_input(scenario));
-  std::vector<std::string_view> names;
-  for (const Model& other : model_catalogue()) {
-    if (other.lammps_law != nullptr) names.push_back(other.name);
-  }
+  const auto names = names_of_models([](const Model& other) { return other.lammps_law != nullptr; });
   throw std::invalid_argument(fmt::format("LAMMPS has no contact law with the equations of model {}, only of {}",
                                           scenario.model, fmt::join(names, " and ")));
 }

@@ -63,10 +63,7 @@ class ProfileSink final : public HistorySink {
 
 Table contact_profiles(const CheckedScenario& scenario, double time, const SystemWrapper& wrapped) {
   if (!find_model(scenario.model)->has_profile) {
-    std::vector<std::string_view> names;
-    for (const Model& model : model_catalogue()) {
-      if (model.has_profile) names.push_back(model.name);
-    }
+    const auto names = names_of_models([](const Model& model) { return model.has_profile; });
     throw std::runtime_error(fmt::format("model '{}' has no profile under its contacts; those of {} have one",
                                          scenario.model, listed(names)));
   }
