@@ -60,8 +60,6 @@ constexpr std::array<string_view, 8> k_domain{
     "no friction, no adhesion, no hardening",
 };
 
-constexpr std::array<string_view, 1> k_skipped{"adhesion and hardening: not part of the model"};
-
 std::unique_ptr<HybridSystem> bind(const ModelInput& input, std::vector<ContactClass> classes, const Reach& reach) {
   return std::make_unique<System>(input, std::move(classes), reach);
 }
@@ -121,7 +119,6 @@ Model model() noexcept {
           .events = k_events,
           .domain = k_domain,
           .least_wall_angle = k_least_wall_angle,
-          .skipped = k_skipped,
           .moves_surface = true,
           .bind = bind,
           .parameters = parameters,

@@ -15,7 +15,7 @@
 #include "cel/modes.hpp"
 #include "cel/newton.hpp"
 #include "contacts/columns.hpp"
-#include "system/model.hpp"
+#include "system/model_input.hpp"
 
 namespace monograin::cel {
 

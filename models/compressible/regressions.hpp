@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "compressible/law.hpp"
-#include "system/model.hpp"
+#include "system/keys.hpp"
+#include "system/model_input.hpp"
 
 namespace monograin::compressible {
 

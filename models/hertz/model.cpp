@@ -30,12 +30,11 @@ constexpr std::array k_regimes{
     Term{"elastic", "Hertz contact"},
 };
 
-constexpr std::array<string_view, 2> k_domain{
+constexpr std::array<string_view, 3> k_domain{
     "small contacts: contact radius well below the particle radius (no check)",
     "a wall stays at least 1e-3 R0 from the centre (stop)",
+    "no friction, no adhesion, no yield",
 };
-
-constexpr std::array<string_view, 1> k_skipped{"yield and growth of the apparent radius: not part of the model"};
 
 double composite_modulus(const ModelInput& input) {
   return monograin::composite_modulus(input.material("youngs_modulus"), input.material("poisson_ratio"));
@@ -110,7 +109,6 @@ Model model() noexcept {
                                      .has_profile = true,
                                      .regimes = k_regimes,
                                      .domain = k_domain,
-                                     .skipped = k_skipped,
                                      .parameters = parameters,
                                      .reach = reach,
                                      .is_elastic = [](const ModelInput&) { return true; },

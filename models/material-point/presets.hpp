@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "system/model.hpp"
+#include "system/keys.hpp"
 
 namespace monograin::material_point {
 

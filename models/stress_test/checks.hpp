@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "system/model.hpp"
+#include "system/model_input.hpp"
 #include "system/number_text.hpp"
 
 namespace monograin {

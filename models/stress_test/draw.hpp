@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "stress_test/dice.hpp"
-#include "system/model.hpp"
+#include "system/keys.hpp"
+#include "system/model_input.hpp"
 
 namespace monograin {
 

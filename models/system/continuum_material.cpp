@@ -1,6 +1,6 @@
 #include "system/continuum_material.hpp"
 
-#include "system/model.hpp"
+#include "system/model_input.hpp"
 
 namespace monograin {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "system/model.hpp"
+#include "system/model_input.hpp"
 
 namespace monograin {
 

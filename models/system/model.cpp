@@ -1,14 +1,18 @@
 #include "system/model.hpp"
 
+#include <algorithm>
+
 namespace monograin {
 
-std::vector<DerivedParameter> material_parameters(
-    const ModelInput& input, std::initializer_list<std::pair<const char*, std::string_view>> keys) {
-  std::vector<DerivedParameter> list;
-  for (const auto& [key, unit] : keys) {
-    if (const auto value = input.optional_material(key)) list.push_back({key, *value, unit});
-  }
-  return list;
+bool Model::has_adhesion() const noexcept {
+  return std::ranges::find(material, Dimension::surface_energy, &QuantityKey::dimension) != material.end();
+}
+
+bool Model::adheres(const std::map<std::string, double>& values) const {
+  return std::ranges::any_of(material, [&](const QuantityKey& key) {
+    const auto found = values.find(std::string(key.name));
+    return key.dimension == Dimension::surface_energy && found != values.end() && found->second > 0.0;
+  });
 }
 
 std::vector<std::string> reference_texts(const Model& model) {

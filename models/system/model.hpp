@@ -6,217 +6,19 @@
 /// The workbench uses only this value and refers to no model by name.
 #pragma once
 
-#include <array>
-#include <initializer_list>
 #include <map>
 #include <memory>
-#include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <variant>
 #include <vector>
 
 #include "system/citation.hpp"
 #include "system/hybrid_system.hpp"
-#include "system/resolution.hpp"
-#include "system/walls.hpp"
+#include "system/keys.hpp"
+#include "system/model_input.hpp"
 
 namespace monograin {
-
-/// Physical dimension of a quantity. It fixes which unit strings are accepted; a bare number is always in SI units.
-enum class Dimension {
-  none,
-  length,
-  stress,
-  surface_energy,
-  stiffness,  ///< force over displacement
-  force,
-  time,
-  velocity,
-  force_rate,
-  angle,
-  strain_rate,  ///< rate of a strain or of another pure number
-  stress_rate,
-  frequency
-};
-
-/// Interval of admissible values. It contains its bounds unless they are marked open.
-struct Range {
-  double lower = -k_infinity;
-  double upper = k_infinity;
-  bool lower_is_open = false;
-  bool upper_is_open = false;
-
-  [[nodiscard]] constexpr bool contains(double value) const noexcept {
-    return (lower_is_open ? value > lower : value >= lower) && (upper_is_open ? value < upper : value <= upper);
-  }
-};
-
-inline constexpr Range k_positive{.lower = 0.0, .lower_is_open = true};
-inline constexpr Range k_not_negative{.lower = 0.0};
-/// Poisson's ratio, incompressible material included.
-inline constexpr Range k_poisson_to_half{.lower = -1.0, .upper = 0.5, .lower_is_open = true};
-/// Poisson's ratio of compressible material.
-inline constexpr Range k_poisson_below_half{.lower = -1.0, .upper = 0.5, .lower_is_open = true, .upper_is_open = true};
-
-/// Wall sets that a scenario may name if the model allows walls in any position.
-inline constexpr std::array<std::string_view, 5> k_wall_configurations{"simple", "die", "hydrostatic", "oblique-die",
-                                                                       "walls"};
-
-/// A quantity in `[material]` (or a number in a model's own table).
-struct QuantityKey {
-  std::string_view name;
-  std::string_view meaning;
-  Dimension dimension = Dimension::none;
-  Range range;
-  std::optional<double> default_value{};  ///< none: the key must be given, or is optional
-  bool is_optional = false;
-};
-
-/// A choice, a switch, a file name or a number in the table named after the model.
-struct OptionKey {
-  enum class Kind { choice, toggle, file, quantity };
-  std::string_view name;
-  std::string_view meaning;
-  Kind kind = Kind::choice;
-  std::span<const std::string_view> choices{};  ///< words of a choice; the first one is the default
-  bool default_toggle = false;                  ///< default of a toggle
-  Dimension dimension = Dimension::none;        ///< dimension of a quantity
-  Range range{};                                ///< admissible values of a quantity
-  std::optional<double> default_value{};        ///< default of a quantity; none: the quantity may be absent
-  /// Columns of a file with a table of values over x and y; empty for a curve of two columns. No two rows of the table
-  /// have the same x and y.
-  std::span<const QuantityKey> columns{};
-  std::string (*example)() = nullptr;  ///< content of an example file
-};
-
-/// A controlled quantity that a step of a model without walls may prescribe; its name is the key in the step.
-struct DriveKey {
-  std::string_view name;
-  std::string_view meaning;
-  Control control = Control::strain;
-  Dimension dimension = Dimension::none;
-  Range range;
-  std::string_view example;  ///< value as written in a scenario file
-  /// True if the key also takes `[axial, lateral]`: targets of this quantity in the first and the second channel.
-  bool may_take_lateral = false;
-  std::string_view column{};  ///< column of the history with the controlled quantity; empty: the column named `name`
-};
-
-/// A named material from a table of the source: values of some keys in `[material]`.
-struct Preset {
-  struct Value {
-    std::string_view key;
-    double value = 0.0;  ///< [SI]
-  };
-  std::string_view name;
-  std::string_view source;  ///< table of the source
-  std::span<const Value> values;
-};
-
-/// A regime or an event with one sentence about it.
-struct Term {
-  std::string_view name;
-  std::string_view meaning;
-};
-
-/// Control and target of the ramp that a step prescribes for one channel.
-struct Prescription {
-  Control control = Control::displacement;
-  double target = 0.0;  ///< [SI]
-};
-
-/// A step of the program of a model without walls, cycles written out.
-struct PlannedStep {
-  std::optional<Prescription> first{};    ///< first channel; none: the controlled quantity keeps its value
-  std::optional<Prescription> lateral{};  ///< second channel; none: the controlled quantity keeps its value
-  bool may_end_early = false;             ///< true if the step has a condition
-};
-
-/// Samples from a file that an option names: a curve y(x), or a table of values over x and y.
-struct SampledCurve {
-  std::string text;  ///< the file as it was read
-  std::vector<double> x{};
-  std::vector<double> y{};
-  std::vector<std::vector<double>> values{};  ///< further columns of a table, in the order of OptionKey::columns
-};
-
-/// Value of an option: toggle, quantity [SI], or the word of a choice or file name.
-using OptionValue = std::variant<bool, double, std::string>;
-
-/// A scenario as its model sees it. Each value alone is admissible; Model::objections checks them together.
-struct ModelInput {
-  double radius = 0.0;                                ///< R0 [m]; 0 if the model has no particle
-  const std::map<std::string, double>& values;        ///< values of the keys in `[material]` [SI]
-  const std::map<std::string, OptionValue>& options;  ///< options by name, defaults filled in
-  const std::map<std::string, SampledCurve>& curves;  ///< content of the files, by the option that names the file
-  std::string_view configuration{};                   ///< wall set; empty if the model has none
-  bool centre_is_free = false;         ///< true if the forces on the particle determine the position of its centre
-  std::vector<PlannedStep> program{};  ///< program of a model without walls; empty with walls
-  std::string_view integrator{};       ///< integrator that the scenario names, before `auto` is resolved
-
-  /// Value of a key in `[material]` [SI]. @throws std::out_of_range if the scenario has no such key
-  [[nodiscard]] double material(const char* key) const {
-    const auto found = values.find(key);
-    if (found != values.end()) return found->second;
-    throw std::out_of_range(std::string("the law asks for '") + key + "', which is no key of its [material]");
-  }
-  /// Value of a key in `[material]` [SI]; none if the scenario has no such key.
-  [[nodiscard]] std::optional<double> optional_material(const char* key) const {
-    const auto found = values.find(key);
-    return found == values.end() ? std::nullopt : std::optional(found->second);
-  }
-  /// Value of an option of kind quantity [SI]; none if it is absent.
-  [[nodiscard]] std::optional<double> number(const char* key) const {
-    const auto found = options.find(key);
-    return found == options.end() ? std::nullopt : std::optional(std::get<double>(found->second));
-  }
-  /// Word of an option of kind choice, or file name of an option of kind file.
-  [[nodiscard]] const std::string& word(const char* key) const { return std::get<std::string>(options.at(key)); }
-  [[nodiscard]] bool toggle(const char* key) const { return std::get<bool>(options.at(key)); }
-  [[nodiscard]] const SampledCurve* curve(const char* key) const {
-    const auto found = curves.find(key);
-    return found == curves.end() ? nullptr : &found->second;
-  }
-  /// Value of an option of kind choice as an enumerator, by a table of words and enumerators.
-  /// @throws std::logic_error if the table lacks the word
-  template <class Enum, std::size_t N>
-  [[nodiscard]] Enum choice(const char* key, const std::pair<const char*, Enum> (&table)[N]) const {
-    for (const auto& [name, value] : table) {
-      if (word(key) == name) return value;
-    }
-    throw std::logic_error(std::string("option ") + key + " = '" + word(key) + "' was checked but is not bound");
-  }
-};
-
-/// A fault of a scenario whose values are inconsistent, though each is admissible.
-struct Objection {
-  std::string_view key;  ///< key in `[material]` or in the model's own table, or `configuration`
-  std::string message;
-  std::optional<std::size_t> step{};  ///< index of a step; if given, the message points to this step, not to the key
-};
-
-/// Contact classes of a scene and their ramps in the first step. The ramp of a wall at rest ends where it starts.
-struct FirstStep {
-  std::span<const ContactClass> classes;
-  std::span<const Ramp> ramps;  ///< one for each class [SI]
-};
-
-/// A constant that follows from the material of a scenario, before the program starts.
-struct DerivedParameter {
-  std::string_view name;
-  double value = 0.0;
-  std::string_view unit;
-  std::string_view symbol{};  ///< symbol in the source; empty: none
-};
-
-/// Lists keys of `[material]` with their values, as constants with the given units. Keys that the scenario lacks are
-/// left out.
-[[nodiscard]] std::vector<DerivedParameter> material_parameters(
-    const ModelInput& input, std::initializer_list<std::pair<const char*, std::string_view>> keys);
 
 /// A channel of a model without walls, at rest before the first step.
 struct RestingChannel {
@@ -284,8 +86,6 @@ struct Model {
   /// Quantities that a condition of a step in a model without walls can wait for, besides events.
   std::span<const QuantityKey> conditions{};
 
-  /// Parts of other models that this model lacks; run.json lists them.
-  std::span<const std::string_view> skipped{};
   /// True if a contact moves the surface under the other walls, so that the sign of an overlap does not show a contact.
   bool moves_surface = false;
   /// True if walls cannot pull, and a step that prescribes a negative force ends the run.
@@ -338,6 +138,12 @@ struct Model {
 
   /// True if the model has a particle and walls; false for a material point or a packing.
   [[nodiscard]] bool has_walls() const noexcept { return drives.empty(); }
+
+  /// True if a key of `[material]` is a surface energy: the law has adhesion.
+  [[nodiscard]] bool has_adhesion() const noexcept;
+
+  /// True if the surface energy among the values of `[material]` [SI] is positive, so that walls may pull.
+  [[nodiscard]] bool adheres(const std::map<std::string, double>& values) const;
 };
 
 /// The references of a model as lines of text (citation_text), the main one first.

@@ -48,14 +48,6 @@ std::optional<double> latest_end(const CheckedScenario& scenario) {
   return end;
 }
 
-/// True if the material has a surface energy: walls may then pull.
-bool is_adhesive(const CheckedScenario& scenario, const Model& model) {
-  return std::ranges::any_of(model.material, [&](const QuantityKey& key) {
-    const auto found = scenario.material.find(std::string(key.name));
-    return key.dimension == Dimension::surface_energy && found != scenario.material.end() && found->second > 0.0;
-  });
-}
-
 /// True if some wall moves outwards or pulls, and none moves inwards or is pressed on the particle.
 bool only_withdraws(const CheckedScenario& scenario) {
   std::vector<double> targets;
@@ -84,12 +76,12 @@ bool does_nothing(const CheckedScenario& scenario) {
 std::vector<std::string> remarks_on(const CheckedScenario& scenario) {
   std::vector<std::string> remarks = scenario.doubts;
   const Model& model = *find_model(scenario.model);
-  if (model.has_walls() && !is_adhesive(scenario, model) && only_withdraws(scenario)) {
+  if (model.has_walls() && !model.adheres(scenario.material) && only_withdraws(scenario)) {
     remarks.emplace_back(
         "no wall moves towards the particle or is pressed on it: displacements are positive inwards, forces in "
         "compression");
   }
-  if (!is_adhesive(scenario, model) && does_nothing(scenario)) {
+  if (!model.adheres(scenario.material) && does_nothing(scenario)) {
     remarks.emplace_back(
         "the program does nothing: its steps hold what is there, or end at zero, where they begin; expected a step "
         "with another target");

@@ -14,7 +14,7 @@
 #include "monograin/faults.hpp"
 #include "scenario/integrators.hpp"
 #include "scenario/text_file.hpp"
-#include "system/model.hpp"
+#include "system/model_input.hpp"
 #include "system/walls.hpp"
 
 namespace monograin {

@@ -119,7 +119,7 @@ double ramp_bound(const Predictor& predictor, const Step& step, double reach, bo
 /// Largest displacement [m] or force [N] to which the programs lead.
 double program_bound(const Predictor& predictor, const std::vector<Channel>& channels, Step::Kind kind) {
   double largest = 0.0;
-  const bool adheres = predictor.input.optional_material("surface_energy").value_or(0.0) > 0.0;
+  const bool adheres = predictor.model.adheres(predictor.input.values);
   const std::size_t count = legs_run(predictor, channels);
   for (const Channel& channel : channels) {
     double before = 0.0;  // upper bound of the value to which the last ramp of this kind has led

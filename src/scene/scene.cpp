@@ -201,11 +201,9 @@ Scene make_scene(const CheckedScenario& scenario, bool merges_walls) {
                                    ? "algebraic unknowns: by symmetry the wall forces balance on the centre at rest"
                                    : "algebraic unknowns: displacements are prescribed and the centre is fixed");
   }
-  if (const auto energy = scenario.material.find("surface_energy");
-      energy != scenario.material.end() && energy->second == 0.0) {
+  if (model.has_adhesion() && !model.adheres(scenario.material)) {
     scene.skipped.emplace_back("adhesion: the surface energy is zero");
   }
-  for (const std::string_view part : model.skipped) scene.skipped.emplace_back(part);
   scene.skipped.emplace_back("guards that cannot fire before the end of a step");
   scene.skipped.emplace_back("observables between output points");
   return scene;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "catalogue.hpp"
 #include "engine/drive.hpp"
 #include "scenario/integrators.hpp"
 #include "scene/scene.hpp"
@@ -17,12 +18,6 @@ namespace {
 constexpr double k_series_noise = 1e-12;  // relative error of a response in series with a machine
 constexpr std::string_view k_displacement = ".displacement";
 constexpr std::string_view k_force = ".force";
-
-/// Whether the material has a surface energy: walls may then pull.
-bool is_adhesive(const CheckedScenario& scenario) {
-  const auto found = scenario.material.find("surface_energy");
-  return found != scenario.material.end() && found->second > 0.0;
-}
 
 }  // namespace
 
@@ -77,7 +72,7 @@ bool Response::run(const Machine& machine) {
   std::vector<double> driving = path().x;
   const bool moves_force = calibration_.x.observable.ends_with(k_force) && machine.force_offset != 0.0;
   if (moves_force) {
-    const bool may_pull = is_adhesive(curve_.scenario);
+    const bool may_pull = find_model(curve_.scenario.model)->adheres(curve_.scenario.material);
     for (double& force : driving) {
       force -= machine.force_offset;
       // Nothing pulls at a particle that does not adhere: with less force than without a load, it is not touched.

@@ -48,10 +48,7 @@ constexpr double k_jump = 1e-6;
 // not balance each other.
 constexpr double k_left_over = 1e-9;
 
-double material(const CheckedScenario& scenario, const char* key) {
-  const auto found = scenario.material.find(key);
-  return found == scenario.material.end() ? 0.0 : found->second;
-}
+bool adheres(const CheckedScenario& scenario) { return find_model(scenario.model)->adheres(scenario.material); }
 
 Dimension find_dimension(const std::string& model, std::string_view key) {
   const std::span<const QuantityKey> keys = find_model(model)->material;
@@ -129,7 +126,7 @@ void check_numbers(const Run& run, const CheckedRun& checked, Violations& found)
 
 void check_forces(const Run& run, Violations& found) {
   // A fixed step does not end where a contact opens.
-  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_forward_euler) return;
+  if (adheres(run.scenario) || run.integrator.used == integrators::k_forward_euler) return;
   const Table& table = run.record.history;
   const double scale = largest_of_kind(table, "force");
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
@@ -145,7 +142,7 @@ void check_forces(const Run& run, Violations& found) {
 
 /// Checks that a contact which bears keeps its overlap where a step ends and the next one begins.
 void check_step_starts(const Run& run, Violations& found) {
-  if (material(run.scenario, "surface_energy") > 0.0 || run.integrator.used == integrators::k_forward_euler) return;
+  if (adheres(run.scenario) || run.integrator.used == integrators::k_forward_euler) return;
   const Table& table = run.record.history;
   const double most =
       std::max(own_tolerance(run), k_jump) * largest_of_kind(table, "overlap") + k_touch * run.scenario.radius;
@@ -196,7 +193,7 @@ std::optional<std::string> column_of(const CheckedScenario& scenario, const Scen
     return std::string(drive.column.empty() ? drive.name : drive.column);
   }
   if (*control == Control::displacement && scenario.loading.centre_is_free) return std::nullopt;
-  const bool may_open = step.target < 0.0 || material(scenario, "surface_energy") > 0.0;
+  const bool may_open = step.target < 0.0 || adheres(scenario);
   if (*control == Control::force && may_open) return std::nullopt;
   return fmt::format("{}.{}", channel.name, *control == Control::force ? "force" : "displacement");
 }
@@ -253,7 +250,7 @@ double deepest_asked_for(const CheckedScenario& scenario, const Scene& scene) {
 
 /// Checks the limit that forces drive the centre away: it is right only if no touching contacts could balance them.
 void check_hold(const Run& run, Violations& found) {
-  if (run.record.limit != Limit::centre_driven_away || material(run.scenario, "surface_energy") > 0.0) return;
+  if (run.record.limit != Limit::centre_driven_away || adheres(run.scenario)) return;
   const Table& table = run.record.history;
   const std::size_t last = table.row_count() - 1;
   const auto step = static_cast<std::size_t>(table.at(last, *table.find("step"))) - 1;
@@ -346,7 +343,7 @@ void check_energy(const Run& run, Violations& found) {
 /// True if modes may alternate without end: with adhesion and a free centre, or with a particle that grows until a
 /// contact is made and stops growing while it is closed (docs/reference/limits.md).
 bool may_go_on(const Run& run) {
-  if (!(material(run.scenario, "surface_energy") > 0.0)) return false;
+  if (!adheres(run.scenario)) return false;
   if (run.scenario.loading.centre_is_free) return true;
   const Table& events = run.record.events;
   const auto name = *events.find("event");
