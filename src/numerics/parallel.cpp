@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -29,7 +30,11 @@ void for_each_index(std::size_t count, std::size_t threads,
   };
   {
     std::vector<std::jthread> others;
-    for (std::size_t thread = 1; thread < std::min(threads, count); ++thread) others.emplace_back(take, thread);
+    try {
+      for (std::size_t thread = 1; thread < std::min(threads, count); ++thread) others.emplace_back(take, thread);
+    } catch (const std::system_error&) {
+      // The system gives no more threads: those that have started do the work.
+    }
     take(0);
   }
   if (first_exception) std::rethrow_exception(first_exception);

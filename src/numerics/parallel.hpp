@@ -15,7 +15,7 @@ namespace monograin {
 /// part, as number 0.
 ///
 /// The first exception is thrown again once all threads have ended; after it no further i is begun.
-/// @param threads  largest number of threads
+/// @param threads  largest number of threads; there are fewer if the system gives no more
 void for_each_index(std::size_t count, std::size_t threads,
                     const std::function<void(std::size_t i, std::size_t thread)>& work);
 

@@ -148,6 +148,8 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
   } catch (const ScenarioError& error) {
     outcome.row.status = k_refused;
     outcome.row.reason = plain(messages_of(error));
+  } catch (const std::bad_alloc&) {  // says nothing about this run: the next call of the sweep computes it
+    throw;
   } catch (const std::exception& error) {  // a bug of the program costs this run, not the sweep
     outcome.row.status = to_string(RunStatus::failed);
     outcome.row.reason = plain(in_own_words(error));

@@ -154,9 +154,9 @@ std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path&
 }
 
 std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs::path& curves) {
-  fs::create_directories(curves);
   const std::vector<fs::path> files = scenario_files(scenarios);
   std::vector<RegressionResult> results = orphaned_curves(files, curves);
+  std::vector<Run> runs;  // all are computed before the first one replaces a curve
   for (const fs::path& file : files) {
     CheckedScenario scenario = read_scenario(file);
     const bool has_direct = has_direct_form(scenario);
@@ -174,6 +174,10 @@ std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs:
                                : fmt::format("integrated, {:g} of each column's largest magnitude",
                                              k_rtol_multiple * scenario.numerics.rtol)};
     for (Table* table : {&run.record.history, &run.record.events}) table->header.push_back(claim);
+    runs.push_back(std::move(run));
+  }
+  fs::create_directories(curves);
+  for (const Run& run : runs) {
     write_csv(curves / (run.scenario.name + ".csv"), run.record.history);
     write_csv(curves / (run.scenario.name + std::string(k_events_suffix)), run.record.events);
   }

@@ -2,7 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <set>
+#include <string>
+
+#include "scenario/faults.hpp"
+#include "support/scenario_texts.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/text_file.hpp"
 
 namespace monograin::regress_test {
 namespace {
@@ -28,6 +35,19 @@ TEST(StoredCurves, AreAskedForWhereTheyAreMissing) {
     EXPECT_FALSE(result.passes());
     EXPECT_NE(result.fault.find("--accept"), std::string::npos) << result.fault;
   }
+}
+
+TEST(StoredCurves, AreAllReplacedOrNone) {
+  const TemporaryFolder folder;
+  const auto scenarios = folder.path() / "scenarios";
+  std::filesystem::create_directory(scenarios);
+  write_text(scenarios / "a.toml", k_hertz_text);
+  EXPECT_EQ(accept_curves(scenarios, folder.path() / "curves").size(), 1U);
+  const std::string before = read_text(folder.path() / "curves" / "a.csv");
+  write_text(scenarios / "a.toml", replaced(k_hertz_text, "0.22", "0.23"));
+  write_text(scenarios / "b.toml", "no scenario");
+  EXPECT_THROW(static_cast<void>(accept_curves(scenarios, folder.path() / "curves")), ScenarioError);
+  EXPECT_EQ(read_text(folder.path() / "curves" / "a.csv"), before);
 }
 
 TEST(StoredCurves, NeedAFolderOfScenarios) {
