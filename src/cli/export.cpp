@@ -1,5 +1,6 @@
 // `monograin export`.
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "exchange/lammps.hpp"
 #include "exchange/motion.hpp"
 #include "history/run.hpp"
+#include "history/staged_folder.hpp"
 #include "scenario/text_file.hpp"
 
 namespace monograin {
@@ -23,6 +25,10 @@ struct ExportOptions {
   std::optional<std::string> wall;
 };
 
+bool goes_to_standard_output(const ExportOptions& options) {
+  return options.output.empty() || options.output == "-" || options.output == "/dev/stdout";
+}
+
 /// Runs a scenario, and prints its text or writes it to the file of -o.
 /// @param make  (motion of the scenario's run) -> text
 template <class Make>
@@ -33,17 +39,20 @@ int export_run(const ExportOptions& options, const CheckedScenario& scenario, Ma
     say("{}: {}: {}\n", scenario.name, to_string(run.record.status), run.record.message);
   }
   const std::string text = or_usage_error(options.file, [&] { return make(motion_of(scenario, run.record.history)); });
-  if (options.output.empty()) {
+  if (goes_to_standard_output(options)) {
     print_data("{}", text);
   } else {
-    write_text_file(options.output, text);
+    write_text_file(destination_of(options.output), text);
     say("-> {}\n", options.output);
   }
   return exit_code_of(run.record.status);
 }
 
 CheckedScenario scenario_of(const ExportOptions& options) {
-  if (!options.output.empty()) expect_own_file(options.output, options.output);
+  if (!goes_to_standard_output(options)) {
+    const std::filesystem::path file = destination_of(options.output);  // a link stays
+    expect_own_file(file, file);
+  }
   return read_scenario(options.file, options.overrides, FileKind::any);
 }
 
@@ -63,7 +72,7 @@ CLI::App* add_export(CLI::App& parent, const std::string& name, const std::strin
   CLI::App* command = parent.add_subcommand(name, description);
   command->add_option("FILE", options->file, "Scenario file (TOML)")->required();
   add_overrides(*command, options->overrides);
-  command->add_option("-o,--output", options->output, "File to write [standard output]");
+  command->add_option("-o,--output", options->output, "File to write; - is standard output [-]");
   return command;
 }
 

@@ -15,6 +15,7 @@
 #include "cli/terminal.hpp"
 #include "history/run.hpp"
 #include "history/table_file.hpp"
+#include "scenario/hidden_path.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/words.hpp"
 
@@ -24,9 +25,10 @@ using namespace monograin;
 
 int fail_for_memory() {
   // Must not allocate.
-  write_stream(stderr,
-               "monograin: there is not enough memory; nothing more was written. Ask for fewer output points, steps or "
-               "runs\n");
+  write_stream(
+      stderr,
+      "monograin: there is not enough memory; nothing more was written. Ask for fewer output points, steps, runs "
+      "or threads\n");
   return k_solver_failure;
 }
 
@@ -186,6 +188,7 @@ bool names_no_command(const CLI::App& app, int argc, char** argv) {
 }
 
 int run_program(int argc, char** argv) {
+  remove_hidden_paths_at_signals();
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of the system is a fault of writing like others
   leave_hdf5_files_at_exit();
   CLI::App app("Workbench for the mechanics of a single particle under contact.", "monograin");

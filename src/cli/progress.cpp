@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 #include <utility>
 
 namespace monograin {
@@ -14,6 +15,13 @@ constexpr std::size_t k_width = 30;
 constexpr std::chrono::milliseconds k_interval{100};
 // Moves to the beginning of the line and clears it.
 constexpr const char* k_clear_line = "\r\x1b[K";
+
+/// True if standard error is a terminal that clears a line when it is told to.
+bool may_rewrite_lines() {
+  const char* const terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr && terminal != nullptr &&
+         terminal != std::string_view("dumb");
+}
 
 }  // namespace
 
@@ -25,14 +33,13 @@ std::string progress_text(std::size_t done, std::size_t of, double seconds, cons
   if (done == 0 || seconds <= 0.0) return text;
   const double rate = static_cast<double>(done) / seconds;
   const auto left = static_cast<long>(static_cast<double>(of - done) / rate + 0.5);
-  text += fmt::format(", {:.3g} {}/s, ", rate, what);
+  text += rate < 100.0 ? fmt::format(", {:.3g} {}/s, ", rate, what) : fmt::format(", {:.0f} {}/s, ", rate, what);
   text += left < 3600 ? fmt::format("{}:{:02} left", left / 60, left % 60)
                       : fmt::format("{}:{:02}:{:02} left", left / 3600, left / 60 % 60, left % 60);
   return text;
 }
 
-ProgressBar::ProgressBar(std::string what)
-    : what_(std::move(what)), is_shown_(isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr) {}
+ProgressBar::ProgressBar(std::string what) : what_(std::move(what)), is_shown_(may_rewrite_lines()) {}
 
 ProgressBar::~ProgressBar() {
   if (is_shown_) std::fputs(k_clear_line, stderr);

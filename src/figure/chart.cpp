@@ -514,7 +514,7 @@ void draw_chart(const Chart& chart, const std::string& source, const std::filesy
 std::string try_to_draw(const Chart& chart, const std::string& source, const std::filesystem::path& output) {
   try {
     draw_chart(chart, source, output);
-  } catch (const FigureError& error) {
+  } catch (const std::runtime_error& error) {
     return error.what();
   }
   return {};

@@ -9,44 +9,36 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "figure/figure.hpp"
 #include "history/external_program.hpp"
+#include "scenario/hidden_path.hpp"
+#include "scenario/text_file.hpp"
 
 namespace monograin::figure {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* k_drawing = "drawing";
-constexpr const char* k_log = "log";
+constexpr const char* k_drawing = ".drawing";
+constexpr const char* k_log = ".log";
 
-/// A hidden folder beside a figure in which gnuplot works. The destructor removes it.
-class Workplace {
- public:
-  explicit Workplace(const fs::path& parent) {
-    std::string pattern = (parent / ".figure-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw FigureError(fmt::format("{} cannot be written to: {}", parent.string(), std::strerror(errno)));
-    }
-    path_ = pattern;
+/// A new hidden folder beside a figure.
+[[nodiscard]] HiddenPath make_workplace(const fs::path& figure) {
+  const fs::path parent = fs::absolute(figure).parent_path();
+  std::string pattern = (parent / ".figure-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) {
+    throw std::runtime_error(
+        fmt::format("{} cannot be written: {}", shown_path(figure).string(), std::strerror(errno)));
   }
-  Workplace(const Workplace&) = delete;
-  Workplace& operator=(const Workplace&) = delete;
-  ~Workplace() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-
-  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
-
- private:
-  fs::path path_;
-};
+  return {pattern, shown_path(figure).parent_path()};
+}
 
 [[nodiscard]] std::string contents(const fs::path& file) {
   std::ifstream in(file);
@@ -76,31 +68,42 @@ fs::path find_gnuplot() {
       "is complete without it");
 }
 
-void run_gnuplot(const fs::path& gnuplot, const fs::path& script, const fs::path& figure) {
-  const fs::path folder = fs::absolute(script).parent_path();
-  const Workplace workplace(folder);
-  const std::string drawing = (fs::path(".") / workplace.path().filename() / k_drawing).string();
-  const fs::path log = workplace.path() / k_log;
+void draw_with_gnuplot(const fs::path& gnuplot, const fs::path& figure, const std::string& script,
+                       const std::string& data) {
+  const HiddenPath workplace = make_workplace(figure);
+  const fs::path& folder = workplace.path();
+  const fs::path script_name = fs::path(figure.filename()).replace_extension(".gp");
+  const fs::path data_name = fs::path(figure.filename()).replace_extension(".dat");
+  write_text_file(folder / script_name, script);
+  write_text_file(folder / data_name, data);
   // --default-settings: a figure must not depend on somebody's ~/.gnuplot.
   const int code = [&] {
     try {
       return run_program(gnuplot,
-                         {"--default-settings", "-e", fmt::format("output = '{}'", drawing),
-                          (fs::path(".") / script.filename()).string()},
-                         folder, log);
+                         {"--default-settings", "-e", fmt::format("output = './{}'", k_drawing),
+                          (fs::path(".") / script_name).string()},
+                         folder, folder / k_log);
     } catch (const std::runtime_error& error) {
       throw FigureError(error.what());
     }
   }();
   std::error_code failure;
-  const auto size = fs::file_size(workplace.path() / k_drawing, failure);
+  const auto size = fs::file_size(folder / k_drawing, failure);
   if (code != 0 || failure || size == 0) {
-    const std::string said = contents(log);
-    throw FigureError(fmt::format("gnuplot could not draw the figure from {}: {}", script.string(),
-                                  said.empty() ? "it said nothing" : said));
+    const std::string said = contents(folder / k_log);
+    const std::string end = code < 0 ? fmt::format("a signal ended it ({})", strsignal(-code)) : "it said nothing";
+    throw FigureError(
+        fmt::format("gnuplot could not draw {}: {}", shown_path(figure).string(), said.empty() ? end : said));
   }
-  fs::rename(workplace.path() / k_drawing, figure, failure);
-  if (failure) throw FigureError(fmt::format("{} cannot be written: {}", figure.string(), failure.message()));
+  // The script first, because it tells whose the other files are.
+  const auto held = hold_signals();
+  for (const auto& [made, name] :
+       {std::pair{script_name, script_name}, {data_name, data_name}, {k_drawing, figure.filename()}}) {
+    fs::rename(folder / made, figure.parent_path() / name, failure);
+    if (failure) {
+      throw std::runtime_error(fmt::format("{} cannot be written: {}", shown_path(figure).string(), failure.message()));
+    }
+  }
 }
 
 std::string plain_text(std::string_view text) {

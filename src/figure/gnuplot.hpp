@@ -10,13 +10,13 @@ namespace monograin::figure {
 /// The gnuplot program on the PATH. @throws FigureError that says how to install it
 [[nodiscard]] std::filesystem::path find_gnuplot();
 
-/// Runs a script in its own folder, and moves the figure to its final name once it is complete. The script writes its
-/// figure to the file that the gnuplot variable `output` names. gnuplot never reads either name as a command.
+/// Draws a figure, and puts its script and its data beside it, with the endings .gp and .dat: all three or none. The
+/// script writes its figure to the file that the gnuplot variable `output` names, and reads the data by their name.
 ///
-/// @param figure  in the script's folder
-/// @throws FigureError with the script's name and gnuplot's messages if there is no figure; an older figure stays
-void run_gnuplot(const std::filesystem::path& gnuplot, const std::filesystem::path& script,
-                 const std::filesystem::path& figure);
+/// @throws FigureError with gnuplot's messages if it draws nothing
+/// @throws std::runtime_error if a file cannot be written
+void draw_with_gnuplot(const std::filesystem::path& gnuplot, const std::filesystem::path& figure,
+                       const std::string& script, const std::string& data);
 
 /// A text on one line: control characters become spaces, and what is not UTF-8 the replacement character.
 [[nodiscard]] std::string plain_text(std::string_view text);

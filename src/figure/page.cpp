@@ -247,28 +247,17 @@ std::string short_text(const std::string& name, std::size_t room) {
   return verbatim_text(name.substr(0, begins[head]) + std::string(k_gap) + name.substr(begins[begins.size() - tail]));
 }
 
-void write_whole(const fs::path& file, const std::string& text) {
-  try {
-    write_text_file(file, text);
-  } catch (const std::runtime_error& error) {
-    throw FigureError(error.what());
-  }
-}
-
 void expect_own_figure(const fs::path& figure) {
   const fs::path script = fs::path(figure).replace_extension(".gp");
   for (const fs::path& file : {figure, script, fs::path(figure).replace_extension(".dat")})
     expect_own_file(file, script);
 }
 
-FigureFiles::FigureFiles(fs::path output)
-    : figure_(std::move(output)),
-      script_(fs::path(figure_).replace_extension(".gp")),
-      data_(fs::path(figure_).replace_extension(".dat")),
-      format_(format_of(figure_)) {
+FigureFiles::FigureFiles(fs::path output) : figure_(std::move(output)), format_(format_of(figure_)) {
   gnuplot_ = find_gnuplot();
   try {
-    for (const fs::path& file : {script_, data_}) expect_own_file(file, script_);
+    const fs::path script = fs::path(figure_).replace_extension(".gp");
+    for (const fs::path& file : {script, fs::path(figure_).replace_extension(".dat")}) expect_own_file(file, script);
   } catch (const std::runtime_error& error) {
     throw FigureError(error.what());
   }
@@ -276,9 +265,7 @@ FigureFiles::FigureFiles(fs::path output)
 
 void FigureFiles::write(const std::string& data, const std::string& script) const {
   make_folder(figure_.parent_path());
-  write_whole(script_, script);  // first, because it tells whose the other files are
-  write_whole(data_, data);
-  run_gnuplot(gnuplot_, script_, figure_);
+  draw_with_gnuplot(gnuplot_, figure_, script, data);
 }
 
 }  // namespace monograin::figure

@@ -47,9 +47,6 @@ struct Axis {
 /// Last part of a script.
 inline constexpr const char* k_page_foot = "unset multiplot\nunset output\n";
 
-/// Writes a file; if this fails, an older file stays as it is. @throws FigureError with the name of the file
-void write_whole(const std::filesystem::path& file, const std::string& text);
-
 /// Refuses to replace a figure that the program has not drawn: no script of the program stands beside it.
 /// @throws std::runtime_error for a figure of the user
 void expect_own_figure(const std::filesystem::path& figure);
@@ -65,15 +62,14 @@ class FigureFiles {
   [[nodiscard]] Format format() const noexcept { return format_; }
   [[nodiscard]] const std::filesystem::path& figure() const noexcept { return figure_; }
   [[nodiscard]] std::string figure_name() const { return figure_.filename().string(); }
-  [[nodiscard]] std::string data_name() const { return data_.filename().string(); }
+  [[nodiscard]] std::string data_name() const { return figure_.filename().replace_extension(".dat").string(); }
 
-  /// Writes all three files. @throws FigureError; an older figure then stays
+  /// Writes all three files, or none. @throws FigureError if gnuplot draws nothing
+  /// @throws std::runtime_error if a file cannot be written
   void write(const std::string& data, const std::string& script) const;
 
  private:
   std::filesystem::path figure_;
-  std::filesystem::path script_;
-  std::filesystem::path data_;
   std::filesystem::path gnuplot_;
   Format format_;
 };

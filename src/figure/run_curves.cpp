@@ -12,6 +12,7 @@
 #include "catalogue.hpp"
 #include "figure/figure.hpp"
 #include "history/table_file.hpp"
+#include "scenario/hidden_path.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::figure {
@@ -288,7 +289,7 @@ RunCurves read_run(const fs::path& run) {
   }
 
   const std::string driven = *driven_class(history);
-  RunCurves curves{.name = folder.filename().string(),
+  RunCurves curves{.name = shown_path(folder).filename().string(),
                    .references = references_of(history),
                    .radius = header_scale(history, "R0"),
                    .youngs_modulus = header_scale(history, "E"),

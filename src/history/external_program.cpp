@@ -17,6 +17,8 @@
 
 #include <fmt/format.h>
 
+#include "scenario/hidden_path.hpp"
+
 namespace monograin {
 namespace {
 
@@ -40,6 +42,7 @@ bool redirect(int stream, const char* file, int flags) {
                          const fs::path& log, pid_t parent, int failure) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(EXIT_FAILURE);  // the parent has ended before
+  restore_signals();
   if (chdir(folder.c_str()) == 0 && redirect(STDIN_FILENO, "/dev/null", O_RDONLY) &&
       redirect(STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_EXCL) &&
       dup2(STDOUT_FILENO, STDERR_FILENO) == STDERR_FILENO) {

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -18,6 +17,7 @@
 #include <utility>
 
 #include "history/run.hpp"
+#include "scenario/hidden_path.hpp"
 #include "scenario/text_file.hpp"
 
 namespace monograin {
@@ -48,18 +48,6 @@ constexpr std::size_t k_largest_marker = std::size_t{256} << 20U;
   refuse(path, fmt::format("{}: {}", what, std::generic_category().message(error)));
 }
 
-/// Follows links and returns the path that they lead to, also if nothing exists there.
-fs::path resolved(fs::path path) {
-  if (!path.has_filename()) path = path.parent_path();
-  constexpr int k_most_links = 40;
-  std::error_code ignored;
-  for (int k = 0; k < k_most_links && fs::is_symlink(path, ignored) && !fs::exists(path, ignored); ++k) {
-    path = path.parent_path() / fs::read_symlink(path);
-  }
-  fs::path result = fs::weakly_canonical(fs::absolute(path));
-  return result.has_filename() ? result : result.parent_path();
-}
-
 /// Opens and locks a folder; is_held() is false if that is impossible. `operation` is that of flock.
 class LockedFolder {
  public:
@@ -80,23 +68,6 @@ class LockedFolder {
  private:
   int descriptor_;
   bool is_held_ = false;
-};
-
-/// Blocks the signals that end a process, as long as the object lives.
-class SignalsHeld {
- public:
-  SignalsHeld() {
-    sigset_t held;
-    sigemptyset(&held);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaddset(&held, signal);
-    pthread_sigmask(SIG_BLOCK, &held, &before_);
-  }
-  ~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsHeld(const SignalsHeld&) = delete;
-  SignalsHeld& operator=(const SignalsHeld&) = delete;
-
- private:
-  sigset_t before_{};
 };
 
 // --- the list of written files
@@ -194,7 +165,6 @@ void write_list(const fs::path& folder) {
 /// Moves the files of a complete result from its hidden folder into the target, one by one. The list moves last: if
 /// this process is killed, the next one finds the list in the hidden folder and completes the move.
 void move_files(const fs::path& staged, const fs::path& target, const std::string& marker) {
-  const SignalsHeld held;
   for (const std::string& name : stale_names(read_list(staged), target)) fs::remove(target / name);
   for (const std::string& name : names_in(staged, marker)) fs::rename(staged / name, target / name);
   fs::rename(staged / k_written_files, target / k_written_files);
@@ -226,7 +196,6 @@ void move_files(const fs::path& staged, const fs::path& target, const std::strin
   while (linked < kept.size() && link((target / kept[linked]).c_str(), (staged / kept[linked]).c_str()) == 0) ++linked;
   if (linked == kept.size() && chmod(staged.c_str(), is.st_mode & 07777U) == 0) {
     if (!kept.empty()) sync_to_disk(staged);  // the user's files are only here once the old folder is removed
-    const SignalsHeld held;
     if (renameat2(AT_FDCWD, staged.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) return true;
   }
   while (linked > 0) fs::remove(staged / kept[--linked], error);
@@ -256,6 +225,7 @@ void clear_leftovers(const fs::path& folder, std::string_view prefix, const fs::
   for (const fs::path& leftover : leftovers) {
     const LockedFolder lock(leftover, LOCK_EX | LOCK_NB);
     if (!lock.is_held()) continue;
+    const auto held = hold_signals();
     // A hidden folder without list holds an incomplete result, or all its files have been moved.
     if (fs::exists(target) && fs::exists(leftover / k_written_files, ignored)) {
       if (fs::exists(leftover / k_moving, ignored)) {
@@ -275,7 +245,9 @@ void clear_leftovers(const fs::path& folder, std::string_view prefix, const fs::
 }  // namespace
 
 StagedFolder::StagedFolder(const fs::path& target, std::string_view marker, std::span<const std::string_view> names)
-    : target_(resolved(target)), marker_(marker) {
+    : target_(destination_of(target)),
+      shown_target_(target.has_filename() ? target : target.parent_path()),
+      marker_(marker) {
   if (fs::exists(target_)) {
     if (!fs::is_directory(target_)) refuse(target_, "is a file; expected a folder for the result");
     {
@@ -293,9 +265,9 @@ StagedFolder::StagedFolder(const fs::path& target, std::string_view marker, std:
 }
 
 StagedFolder::~StagedFolder() {
-  std::error_code ignored;  // files that cannot be removed stay hidden
-  fs::remove_all(staged_, ignored);
+  staged_ = {};
   if (lock_ >= 0) close(lock_);
+  std::error_code ignored;
   for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) {
     fs::remove(*parent, ignored);  // fails unless the folder is empty
   }
@@ -325,15 +297,15 @@ void StagedFolder::make_staged() {
   do {  // repeats if another process removed the folder as a leftover before it was locked
     std::string pattern = prefix + std::string(k_random_length, 'X');
     if (mkdtemp(pattern.data()) == nullptr) refuse(target_, "cannot be written", errno);
-    staged_ = pattern;
+    staged_ = HiddenPath(pattern, shown_target_);
     if (lock_ >= 0) close(lock_);
-    lock_ = LockedFolder(staged_, LOCK_EX).release();
-  } while (!fs::exists(staged_));
+    lock_ = LockedFolder(path(), LOCK_EX).release();
+  } while (!fs::exists(path()));
   // mkdtemp() lets only the owner in: gives the folder the permissions of any new folder.
   struct stat made = {};
   const mode_t mask = umask(0);
   umask(mask);
-  if (stat(staged_.c_str(), &made) == 0) chmod(staged_.c_str(), (made.st_mode & 07000U) | (0777U & ~mask));
+  if (stat(path().c_str(), &made) == 0) chmod(path().c_str(), (made.st_mode & 07000U) | (0777U & ~mask));
 }
 
 /// @throws std::runtime_error if a folder or a file of the user has the name of a file of the result
@@ -354,27 +326,39 @@ void StagedFolder::publish(double effort) {
   const auto flush = [is_worth_it = effort > k_worth_flushing](const fs::path& path) {
     if (is_worth_it) sync_to_disk(path);
   };
-  const std::vector<std::string> names = names_in(staged_, marker_);
-  for (const std::string& name : names) flush(staged_ / name);
-  write_list(staged_);
-  flush(staged_ / k_written_files);
-  flush(staged_);
+  const std::vector<std::string> names = names_in(path(), marker_);
+  for (const std::string& name : names) flush(path() / name);
+  write_list(path());
+  flush(path() / k_written_files);
+  flush(path());
   // An existing target is never renamed over, even if empty: a process that works in it would lose its folder.
-  if (fs::exists(target_) || rename(staged_.c_str(), target_.c_str()) != 0) {
+  if (fs::exists(target_) || rename(path().c_str(), target_.c_str()) != 0) {
     const LockedFolder one_at_a_time(target_, LOCK_EX);
     replaces_own_ = holds_own_result(target_, marker_);  // of another process, since this one began
     for (const std::string& name : names) check_name(name);
-    if (exchange(staged_, target_)) {
-      rescue(staged_, target_);
+    const auto held = hold_signals();
+    if (exchange(path(), target_)) {
+      rescue(path(), target_);
     } else {
-      write_text_file(staged_ / k_moving, "");
-      move_files(staged_, target_, marker_);
+      write_text_file(path() / k_moving, "");
+      move_files(path(), target_, marker_);
       flush(target_);
     }
   }
   flush(target_.parent_path());
   made_parents_.clear();
   close(std::exchange(lock_, -1));
+}
+
+fs::path destination_of(fs::path path) {
+  if (!path.has_filename()) path = path.parent_path();
+  constexpr int k_most_links = 40;
+  std::error_code ignored;
+  for (int k = 0; k < k_most_links && fs::is_symlink(path, ignored) && !fs::exists(path, ignored); ++k) {
+    path = path.parent_path() / fs::read_symlink(path);
+  }
+  fs::path result = fs::weakly_canonical(fs::absolute(path));
+  return result.has_filename() ? result : result.parent_path();
 }
 
 void prepare_folder(const fs::path& folder) {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scenario/hidden_path.hpp"
+
 namespace monograin {
 
 /// File that marks the folder of a run.
@@ -24,9 +26,9 @@ inline constexpr std::string_view k_written_files = ".monograin";
 ///
 /// publish() changes all files in one step, by an exchange of folders. If the target contains folders, has another
 /// owner, is a file system of its own, lies in a folder that cannot be written or contains the working directory,
-/// publish() moves the files one by one, the marker last. The next process for the same target clears up after a killed
-/// one: it completes moves that had begun, and removes other hidden folders. If the target is a link, the link stays
-/// and its destination is the target.
+/// publish() moves the files one by one, the marker last. A signal that ends the process waits for publish(). After a
+/// process that was killed the next one for the same target clears up: it completes moves that had begun, and removes
+/// other hidden folders. If the target is a link, the link stays and its destination is the target.
 class StagedFolder {
  public:
   /// Makes the hidden folder. A target to which the result cannot be written is thus reported before anything is
@@ -42,7 +44,7 @@ class StagedFolder {
   StagedFolder& operator=(const StagedFolder&) = delete;
 
   /// Hidden folder to which the files are written.
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return staged_; }
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return staged_.path(); }
 
   /// Time [s] since this object was made.
   [[nodiscard]] double age() const;
@@ -61,12 +63,16 @@ class StagedFolder {
 
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::filesystem::path target_;
+  std::filesystem::path shown_target_;  ///< as it was named
   std::string marker_;
   bool replaces_own_ = false;                        ///< the target holds an earlier result
   std::vector<std::filesystem::path> made_parents_;  ///< folders made for the target, the outermost first
-  std::filesystem::path staged_;
+  HiddenPath staged_;
   int lock_ = -1;  ///< descriptor that locks the hidden folder until it is published or removed
 };
+
+/// Follows links and returns the absolute path to which they lead, also if nothing exists there.
+[[nodiscard]] std::filesystem::path destination_of(std::filesystem::path path);
 
 /// Makes a folder, if it does not exist, for results whose files are written one by one.
 /// @throws std::runtime_error if the folder cannot be made or written

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "scenario/faults.hpp"
+#include "scenario/hidden_path.hpp"
 
 namespace monograin {
 namespace {
@@ -25,7 +26,8 @@ constexpr std::string_view k_standard_input = "-";
 constexpr std::string_view k_partial_extension = ".partial";
 
 [[noreturn]] void fail(const fs::path& file, int error) {
-  throw std::runtime_error(file.string() + ": cannot be written: " + std::generic_category().message(error));
+  throw std::runtime_error(shown_path(file).string() +
+                           ": cannot be written: " + std::generic_category().message(error));
 }
 
 /// Owns a partly written file, which is removed unless it is moved to its final name.
@@ -34,21 +36,21 @@ class PartialFile {
   /// @param file  the final name
   explicit PartialFile(const fs::path& file) {
     static std::atomic<unsigned> count{0};
+    fs::path path;
     do {  // O_EXCL: never opens an existing file or link
-      path_ = file.parent_path() / fmt::format(".{}-{}{}", getpid(), count++, k_partial_extension);
-      descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      path = file.parent_path() / fmt::format(".{}-{}{}", getpid(), count++, k_partial_extension);
+      descriptor_ = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (descriptor_ < 0 && errno == EEXIST);
     if (descriptor_ < 0) fail(file, errno);
+    hidden_ = HiddenPath(path, file);
   }
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
   ~PartialFile() {
     if (descriptor_ >= 0) close(descriptor_);
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove(path_, ignored);
   }
 
-  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
+  [[nodiscard]] const fs::path& path() const noexcept { return hidden_.path(); }
 
   /// @return true if everything was written; otherwise errno has the reason
   [[nodiscard]] bool write(std::string_view text) {
@@ -63,13 +65,13 @@ class PartialFile {
 
   [[nodiscard]] bool move_to(const fs::path& file) {
     if (close(std::exchange(descriptor_, -1)) != 0) return false;
-    if (rename(path_.c_str(), file.c_str()) != 0) return false;
-    path_.clear();
+    if (rename(path().c_str(), file.c_str()) != 0) return false;
+    hidden_.release();
     return true;
   }
 
  private:
-  fs::path path_;
+  HiddenPath hidden_;
   int descriptor_ = -1;
 };
 
@@ -152,11 +154,17 @@ void expect_own_file(const fs::path& file, const fs::path& witness) {
   constexpr std::array<std::string_view, 5> k_own{"# program: monograin ",
                                                   "# sweep: ", "# scenario: ", "# title: ", "# Draws '"};
   constexpr std::size_t k_longest = 32;
-  std::error_code ignored;
-  const fs::file_type type = fs::symlink_status(file, ignored).type();
+  std::error_code error;
+  const fs::file_type type = fs::symlink_status(file, error).type();
   if (type == fs::file_type::not_found || type == fs::file_type::symlink) return;  // a link is replaced, not its target
-  const std::string text = read_text_file(witness, k_longest).text;
+  if (type == fs::file_type::none) fail(file, error.value());
+  if (type == fs::file_type::directory) fail(file, EISDIR);
+  const auto [text, problem] = read_text_file(witness, k_longest);
   if (std::ranges::any_of(k_own, [&](std::string_view words) { return text.starts_with(words); })) return;
+  if (!problem.empty() && witness == file) {
+    throw std::runtime_error(
+        fmt::format("{}: would be replaced, but whose it is cannot be seen: {}", file.string(), problem));
+  }
   throw std::runtime_error(
       fmt::format("{}: monograin has not written this file and would replace it; move it away, or choose another place",
                   file.string()));

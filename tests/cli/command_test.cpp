@@ -22,7 +22,8 @@ Outcome CommandTest::shell(const std::string& script) const {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text("stdout.txt"), text("stderr.txt")};
 }
 
-bool CommandTest::start_and_kill(const std::vector<std::string>& arguments, std::chrono::microseconds delay) const {
+bool CommandTest::start_and_kill(const std::vector<std::string>& arguments, std::chrono::microseconds delay,
+                                 int signal) const {
   std::vector<std::string> words{MONOGRAIN_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -35,7 +36,7 @@ bool CommandTest::start_and_kill(const std::vector<std::string>& arguments, std:
     _exit(9);
   }
   std::this_thread::sleep_for(delay);
-  kill(child, SIGKILL);
+  kill(child, signal);
   int status = 0;
   waitpid(child, &status, 0);
   return WIFSIGNALED(status);

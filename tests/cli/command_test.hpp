@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -27,8 +28,9 @@ class CommandTest : public ::testing::Test {
   /// Runs a shell script in the test's folder, in which `monograin` and $M are the program; the exit code is the
   /// script's.
   [[nodiscard]] Outcome shell(const std::string& script) const;
-  /// Starts `monograin ARGUMENTS` and kills it after some time; whether it was still running.
-  bool start_and_kill(const std::vector<std::string>& arguments, std::chrono::microseconds delay) const;
+  /// Starts `monograin ARGUMENTS` and ends it by a signal after some time; whether it was still running.
+  bool start_and_kill(const std::vector<std::string>& arguments, std::chrono::microseconds delay,
+                      int signal = SIGKILL) const;
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
   [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder() / name; }

@@ -37,6 +37,23 @@ TEST_F(ExportCommand, WritesAFileAndReplacesOnlyItsOwn) {
   EXPECT_EQ(text("notes.txt"), "mine\n");
 }
 
+TEST_F(ExportCommand, WritesWhereALinkLeadsAndToStandardOutput) {
+  namespace fs = std::filesystem;
+  const std::string table = "export table " + k_scenarios + "uniaxial.toml' -o ";
+  ASSERT_EQ(monograin(table + "force.csv").code, 0);
+  const std::string expected = text("force.csv");
+  fs::create_symlink("there.csv", path("link.csv"));
+  EXPECT_EQ(monograin(table + "link.csv").code, 0);
+  EXPECT_TRUE(fs::is_symlink(path("link.csv")));
+  EXPECT_EQ(text("there.csv"), expected);
+  for (const char* place : {"-", "/dev/stdout"}) EXPECT_EQ(monograin(table + place).out, expected) << place;
+  fs::create_directory(path("folder"));
+  const Outcome folder = monograin(table + "folder");
+  EXPECT_EQ(folder.code, 2);
+  EXPECT_TRUE(contains(folder.err, "folder: cannot be written: Is a directory")) << folder.err;
+  EXPECT_FALSE(fs::exists(path("-")));
+}
+
 TEST_F(ExportCommand, NamesWhatItExpectsInstead) {
   const Outcome model = monograin("export lammps " + k_scenarios + "cel.toml'");
   EXPECT_EQ(model.code, 2);

@@ -325,6 +325,48 @@ TEST_F(UserFiles, AKillAtAnyMomentLeavesOneResultOrTheOther) {
   }
 }
 
+TEST_F(UserFiles, ASignalAtAnyMomentLeavesNothingHidden) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (int k = 0; k < 15; ++k) {
+      start_and_kill({"run", "small.toml", "--quiet", "-o", "r"}, std::chrono::microseconds(1500 * k), signal);
+      for (const auto& entry : fs::directory_iterator(path(""))) {
+        EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path() << " after signal " << signal;
+      }
+      EXPECT_TRUE(!fs::exists(path("r")) || names_in("r") == k_run_files);
+    }
+  }
+}
+
+TEST_F(UserFiles, ASignalEndsTheProgramAsItEndsOthers) {
+  const Outcome outcome = shell(
+      "monograin run small.toml --set output.points=1000000 --quiet -o r & p=$!; sleep 0.3; kill -TERM $p; wait $p");
+  EXPECT_EQ(outcome.code, 128 + SIGTERM);
+  EXPECT_FALSE(fs::exists(path("r")));
+}
+
+TEST_F(UserFiles, AFigureThatGnuplotCannotDrawLeavesTheOldOneWhole) {
+  ASSERT_EQ(monograin("run small.toml -o r").code, 0);
+  ASSERT_EQ(monograin("plot r -o f.svg").code, 0);
+  const std::vector<std::string> before{text("f.svg"), text("f.gp"), text("f.dat")};
+  ASSERT_EQ(monograin("run small.toml --set output.points=7 -o r").code, 0);
+  write_text(path("bin/gnuplot"), "#!/bin/sh\necho out of ink\nexit 1\n");
+  fs::permissions(path("bin/gnuplot"), fs::perms::owner_all);
+  const Outcome outcome = shell("PATH=$PWD/bin:$PATH; monograin plot r -o f.svg");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("gnuplot could not draw f.svg: out of ink"), std::string::npos) << outcome.err;
+  EXPECT_EQ((std::vector<std::string>{text("f.svg"), text("f.gp"), text("f.dat")}), before);
+  EXPECT_EQ(shell("PATH=$PWD/bin:$PATH; monograin run small.toml --plot -o new").err.find("staged"), std::string::npos);
+  EXPECT_FALSE(fs::exists(path("new/figure.gp")));
+}
+
+TEST_F(UserFiles, AFigureHasTheSameDataWheneverItIsDrawn) {
+  ASSERT_EQ(monograin("run small.toml --plot -o r").code, 0);
+  const std::string first = text("r/figure.dat");
+  ASSERT_EQ(monograin("run small.toml --plot -o r").code, 0);
+  EXPECT_EQ(text("r/figure.dat"), first);
+  EXPECT_NE(first.find("# run 1: r\n"), std::string::npos);
+}
+
 TEST_F(UserFiles, StayBesideASweepACalibrationAndAStressTest) {
   write_text(path("s.toml"),
              "scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { values = [0.2, 0.3] }\n");

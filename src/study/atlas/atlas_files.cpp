@@ -275,8 +275,8 @@ std::vector<fs::path> write_atlas(const std::vector<AtlasFigure>& figures, const
     }
     if (const std::string& text = *tables++; !text.empty()) {
       fs::create_directories(folder);
-      figure::write_whole(table_of(made), csv_text(tables_csv(made)));
-      figure::write_whole(folder / (made.name + ".md"), text);
+      write_text_file(table_of(made), csv_text(tables_csv(made)));
+      write_text_file(folder / (made.name + ".md"), text);
       written.insert(written.end(), {table_of(made), folder / (made.name + ".md")});
     }
   }

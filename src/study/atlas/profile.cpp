@@ -67,7 +67,7 @@ fs::path draw_profiles(const Table& profiles, const fs::path& output) {
   csv.replace_extension(".csv");
   expect_own_file(csv, csv);
   figure::draw_chart(chart, fmt::format("contact profiles of {}", profiles.header_value("scenario")), output);
-  figure::write_whole(csv, csv_text(profiles));
+  write_text_file(csv, csv_text(profiles));
   return csv;
 }
 

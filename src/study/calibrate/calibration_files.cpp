@@ -10,6 +10,7 @@
 #include "history/run.hpp"
 #include "scenario/edit.hpp"
 #include "scenario/file_keys.hpp"
+#include "scenario/text_file.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/calibration_language.hpp"
@@ -313,15 +314,15 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
 
 std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder,
                               bool has_report) {
-  figure::write_whole(folder.path() / k_calibration_tables[0], csv_text(fit_table(calibration, result)));
-  figure::write_whole(folder.path() / k_calibration_tables[1], fitted_scenario_text(calibration, result));
+  write_text_file(folder.path() / k_calibration_tables[0], csv_text(fit_table(calibration, result)));
+  write_text_file(folder.path() / k_calibration_tables[1], fitted_scenario_text(calibration, result));
   for (const auto& [name, text] : fitted_scenario_files(calibration)) {
-    figure::write_whole(folder.path() / name, text);
+    write_text_file(folder.path() / name, text);
   }
-  figure::write_whole(folder.path() / k_calibration_marker, calibration_json(calibration, result));
+  write_text_file(folder.path() / k_calibration_marker, calibration_json(calibration, result));
   std::string problem = draw_calibration(calibration, result, folder.path());
   if (has_report) {
-    figure::write_whole(folder.path() / "report.md", calibration_report(calibration, result, problem.empty()));
+    write_text_file(folder.path() / "report.md", calibration_report(calibration, result, problem.empty()));
     if (problem.empty()) problem = draw_report(calibration, result, folder.path());
   }
   folder.publish(folder.age());

@@ -11,6 +11,7 @@
 #include "figure/page.hpp"
 #include "history/table.hpp"
 #include "history/turns.hpp"
+#include "scenario/text_file.hpp"
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/text_table.hpp"
 #include "system/resolution.hpp"
@@ -226,11 +227,10 @@ std::string comparison_report(std::span<const Calibration> calibrations, std::sp
 
 std::string write_comparison(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
                              const ModelComparison& comparison, StagedFolder& folder, bool has_report) {
-  figure::write_whole(folder.path() / k_comparison_marker, csv_text(table_of(calibrations, results, comparison)));
+  write_text_file(folder.path() / k_comparison_marker, csv_text(table_of(calibrations, results, comparison)));
   std::string problem = draw_comparison(calibrations, results, folder.path() / "comparison.svg");
   if (has_report) {
-    figure::write_whole(folder.path() / "report.md",
-                        comparison_report(calibrations, results, comparison, problem.empty()));
+    write_text_file(folder.path() / "report.md", comparison_report(calibrations, results, comparison, problem.empty()));
   }
   folder.publish(folder.age());
   return problem;

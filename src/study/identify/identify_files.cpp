@@ -11,6 +11,7 @@
 #include "figure/chart.hpp"
 #include "figure/page.hpp"
 #include "history/run.hpp"
+#include "scenario/text_file.hpp"
 #include "scenario/units.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/text_table.hpp"
@@ -211,7 +212,7 @@ Table identify_table(const ExperimentPlan& plan, const IdentifyResult& result) {
 }
 
 std::string write_identify(const ExperimentPlan& plan, const IdentifyResult& result, StagedFolder& folder) {
-  figure::write_whole(folder.path() / k_identify_marker, csv_text(identify_table(plan, result)));
+  write_text_file(folder.path() / k_identify_marker, csv_text(identify_table(plan, result)));
   const std::string problem = draw(plan, all_sets(plan, result), folder.path());
   folder.publish(folder.age());
   return problem;

@@ -15,6 +15,7 @@
 #include "history/run.hpp"
 #include "history/table.hpp"
 #include "scenario/integrators.hpp"
+#include "scenario/text_file.hpp"
 #include "system/resolution.hpp"
 #include "verify/bench/bench.hpp"
 
@@ -513,8 +514,8 @@ std::vector<fs::path> write_bench(const std::vector<BenchScene>& scenes, const s
                                   const std::vector<BenchSaving>& savings, const fs::path& folder) {
   std::vector<fs::path> written = draw_bench(scenes, machine_text(), folder);
   fs::create_directories(folder);
-  figure::write_whole(folder / "bench.csv", csv_text(csv_of(scenes), k_measured_digits));
-  figure::write_whole(folder / "bench.md", bench_text(scenes, profiles, savings));
+  write_text_file(folder / "bench.csv", csv_text(csv_of(scenes), k_measured_digits));
+  write_text_file(folder / "bench.md", bench_text(scenes, profiles, savings));
   written.insert(written.begin(), {folder / "bench.csv", folder / "bench.md"});
   return written;
 }
