@@ -95,3 +95,14 @@ def test_an_own_law_stands_beside_those_of_the_package(tmp_path):
         assert curved <= hertz < own
         # Both laws let each wall move the surface under the other one, by other means.
         assert own == pytest.approx(computed, rel=0.02)
+
+
+def test_intervals_of_synthetic_experiments_contain_the_truth_where_noise_of_x_is_given(tmp_path):
+    output = run_example("synthetic_experiments.py", "--sets", 8, cwd=tmp_path)
+    kinds = re.findall(r"% \+- ([0-9.]+) %, (\d+) of 8 .*% \+- ([0-9.]+) %, (\d+) of 8", output)
+    assert len(kinds) == 2
+    for scatter, hits, scatter_with_x, hits_with_x in kinds:
+        assert float(scatter_with_x) < float(scatter)
+        # At the level of 95 %, six of eight or fewer are a chance of one in seventeen; five or fewer of one in 170.
+        assert int(hits_with_x) >= 6
+    assert sum(int(hits) for _, hits, _, _ in kinds) < sum(int(hits) for _, _, _, hits in kinds)
