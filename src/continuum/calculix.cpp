@@ -267,6 +267,8 @@ std::vector<SectorState> read_states(const std::string& text, const SectorProble
   const std::size_t node_count = nodes.size();
   std::vector<std::size_t> place(problem.mesh.nodes.size(), node_count);
   for (std::size_t i = 0; i < node_count; ++i) place[nodes[i]] = i;
+  std::vector<Eigen::Vector3d> undeformed;
+  for (const std::size_t node : nodes) undeformed.push_back(problem.mesh.nodes[node]);
   std::vector<SectorState> states;
   SectorState state;
   bool in_displacements = false;
@@ -275,7 +277,7 @@ std::vector<SectorState> read_states(const std::string& text, const SectorProble
   std::string line;
   while (std::getline(lines, line)) {
     if (line.find("displacements") != std::string::npos) {
-      state = {.surface = std::vector<Eigen::Vector3d>(node_count), .forces = {}};
+      state = {.surface = undeformed, .forces = {}};
       in_displacements = true;
       in_total = false;
       continue;

@@ -40,7 +40,8 @@ struct SectorSolution {
   std::string failure;  ///< empty: all instants are computed
 };
 
-/// Reads the states from the text of the .dat file that CalculiX wrote.
+/// Reads the states from the text of the .dat file that CalculiX wrote. Nodes that the text lacks stay in their
+/// undeformed places.
 [[nodiscard]] std::vector<SectorState> read_states(const std::string& text, const SectorProblem& problem);
 
 /// Version of CalculiX, e.g. "CalculiX 2.20".

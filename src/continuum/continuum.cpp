@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <stdexcept>
 
@@ -14,7 +14,6 @@
 #include "continuum/contact_area.hpp"
 #include "continuum/sector.hpp"
 #include "continuum/sector_mesh.hpp"
-#include "history/run_files.hpp"
 #include "scenario/model_input.hpp"
 #include "system/resolution.hpp"
 
@@ -156,8 +155,7 @@ class ParticleElements {
   [[nodiscard]] std::size_t element_count() const noexcept { return problem_.mesh.bricks.size(); }
 
   /// States at the instants, up to where CalculiX ends.
-  std::vector<ParticleState> solve(const ContinuumOptions& options, const std::string& name,
-                                   std::string& failure) const {
+  std::vector<ParticleState> solve(const ElementOptions& options, const std::string& name, std::string& failure) const {
     std::function<void(std::size_t)> progress;
     if (options.progress) progress = [&](std::size_t done) { options.progress(done, problem_.instants.size()); };
     const SectorSolution solution = run_calculix(problem_, options.ccx, options.folder, name, progress);
@@ -309,16 +307,16 @@ std::vector<ContinuumDifference> differences_of(const Motion& motion, const std:
 }
 
 /// Header of the law's history, as that of finite elements.
-std::vector<std::pair<std::string, std::string>> header_of(const Run& law, const ContinuumRun& result,
-                                                           std::string_view mesh) {
+std::vector<std::pair<std::string, std::string>> header_of(const Run& law, RunStatus status,
+                                                           const RunElements& elements) {
   std::vector<std::pair<std::string, std::string>> header;
   for (const auto& [key, value] : law.record.history.header) {
     if (key == "rtol" || key == "atol" || key == "reference") continue;
     header.emplace_back(key, value);
-    if (key == "status") header.back().second = to_string(result.run.record.status);
+    if (key == "status") header.back().second = to_string(status);
     if (key == "model") header.back().second = "continuum";
     if (key == "integrator") {
-      header.back().second = fmt::format("{}, mesh {}, {} elements", result.solver, mesh, result.elements);
+      header.back().second = fmt::format("{}, mesh {}, {} elements", elements.solver, elements.mesh, elements.count);
     }
   }
   return header;
@@ -353,21 +351,35 @@ ContinuumMaterial continuum_material_of(const CheckedScenario& scenario) {
   return material;
 }
 
-ContinuumRun run_continuum(const Run& law, const ContinuumOptions& options) {
+Run run_continuum(const Run& law, const ElementOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
   const ContinuumMaterial material = continuum_material_of(law.scenario);
+  const auto mesh = std::ranges::find(k_continuum_meshes, options.mesh);
+  if (mesh == k_continuum_meshes.end()) {
+    throw std::invalid_argument(
+        fmt::format("mesh = '{}': expected one of {}", options.mesh, fmt::join(k_continuum_meshes, ", ")));
+  }
+  if (law.elements) throw std::invalid_argument("the run is of finite elements; expected the run of a law");
   const Motion motion = motion_of(law.scenario, law.record.history);
   const std::vector<std::size_t> instants = chosen_instants(motion);
   if (instants.empty()) throw std::invalid_argument("the run of the law ended where it began: " + law.record.message);
   const Sector sector = sector_of(motion);
   const auto& meshes = sector.is_axisymmetric ? k_wedge_meshes : k_sector_meshes;
-  const auto asked = std::ranges::find(k_continuum_meshes, options.mesh) - k_continuum_meshes.begin();
-  const SectorMeshSize& coarse_size = meshes.at(static_cast<std::size_t>(asked));
-  const SectorMeshSize& size = meshes.at(static_cast<std::size_t>(asked) + 1);
-  ContinuumRun result;
-  result.run.scenario = law.scenario;
-  result.run.classes = law.classes;
-  result.solver = calculix_version(options.ccx, options.folder);
-  RunRecord& record = result.run.record;
+  const auto asked = static_cast<std::size_t>(mesh - k_continuum_meshes.begin());
+  const SectorMeshSize& coarse_size = meshes.at(asked);
+  const SectorMeshSize& size = meshes.at(asked + 1);
+  Run result{.scenario = law.scenario,
+             .record = {},
+             .integrator = {},
+             .classes = law.classes,
+             .skipped = {},
+             .sensitivities = {},
+             .timings = {}};
+  RunElements& summary = result.elements.emplace();
+  summary.mesh = options.mesh;
+  summary.solver = calculix_version(options.ccx, options.folder);
+  result.integrator.used = summary.solver;
+  RunRecord& record = result.record;
   record.warnings = material.differences;
   if (const double apart = largest_motion(motion, instants); apart > k_coarse_motion) {
     record.warnings.push_back(
@@ -377,7 +389,7 @@ ContinuumRun run_continuum(const Run& law, const ContinuumOptions& options) {
   }
 
   const ParticleElements elements(motion, sector, material, instants, size);
-  result.elements = elements.element_count();
+  summary.count = elements.element_count();
   std::string failure;
   const std::vector<ParticleState> states = elements.solve(options, "continuum", failure);
   record.status = failure.empty() ? law.record.status : RunStatus::failed;
@@ -389,36 +401,14 @@ ContinuumRun run_continuum(const Run& law, const ContinuumOptions& options) {
     coarse = coarser.solve(options, "coarser", failure);
     if (!failure.empty()) record.warnings.push_back("the coarser mesh: " + failure);
   }
-  result.differences =
+  summary.differences =
       differences_of(motion, instants, states, coarse, static_cast<double>(size.meridian) / coarse_size.meridian);
   record.history = history_of(motion, instants, states);
-  record.history.header = header_of(law, result, options.mesh);
+  record.history.header = header_of(law, record.status, summary);
   record.events = Table(law.record.events.columns());
   record.events.header = record.history.header;
+  result.timings.integration = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
-}
-
-std::string continuum_json(const ContinuumRun& result, std::string_view mesh) {
-  using Json = nlohmann::ordered_json;
-  Json json = Json::parse(run_json(result.run));
-  json["model"] = "continuum";
-  json["citation"] = {
-      "G. Dhondt (2004), The Finite Element Method for Three-Dimensional Thermomechanical Applications, "
-      "Wiley, doi:10.1002/0470021217"};
-  for (const char* key : {"skipped", "sensitivities", "integrator", "tolerances", "statistics", "timings_s"}) {
-    json.erase(key);
-  }
-  Json differences = Json::array();
-  for (const auto& [column, loading, unloading, mesh_error] : result.differences) {
-    differences.push_back(
-        {{"column", column}, {"loading", loading}, {"unloading", unloading}, {"mesh_error", mesh_error}});
-  }
-  json["elements"] = {{"solver", result.solver},
-                      {"mesh", mesh},
-                      {"count", result.elements},
-                      {"law_of", result.run.scenario.model},
-                      {"differences", differences}};
-  return json.dump(2) + '\n';
 }
 
 }  // namespace monograin

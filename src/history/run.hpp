@@ -4,12 +4,14 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/drive.hpp"
 #include "history/table.hpp"
+#include "monograin/continuum_difference.hpp"
 #include "monograin/status.hpp"
 #include "monograin/version.hpp"
 #include "scenario/scenario.hpp"
@@ -81,6 +83,14 @@ struct Sensitivity {
 /// is empty.
 [[nodiscard]] SystemWrapper interruptible(const std::function<bool()>& stop);
 
+/// Finite elements that computed a run in the place of the scenario's law.
+struct RunElements {
+  std::string solver;  ///< name and version
+  std::string mesh;
+  std::size_t count = 0;                           ///< of elements
+  std::vector<ContinuumDifference> differences{};  ///< of the law
+};
+
 /// A run with everything that its files show.
 struct Run {
   CheckedScenario scenario;
@@ -90,6 +100,7 @@ struct Run {
   std::vector<std::string> skipped;
   std::vector<Sensitivity> sensitivities;
   Timings timings;
+  std::optional<RunElements> elements{};  ///< none: the law computed the run
 };
 
 /// Runs a checked scenario. History and events get the header lines that make their files self-describing.

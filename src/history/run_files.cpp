@@ -87,11 +87,35 @@ Json to_json(const Run& run) {
             {"files", files_of(scenario)}}}};
 }
 
+/// States finite elements in the place of the law and its integrator.
+void set_elements(Json& json, const RunElements& elements) {
+  const Json law = json["model"];
+  json["model"] = "continuum";
+  json["citation"] = {
+      "G. Dhondt (2004), The Finite Element Method for Three-Dimensional Thermomechanical Applications, "
+      "Wiley, doi:10.1002/0470021217"};
+  for (const char* key : {"skipped", "sensitivities", "integrator", "tolerances", "statistics", "timings_s"}) {
+    json.erase(key);
+  }
+  Json differences = Json::array();
+  for (const auto& [column, loading, unloading, mesh_error] : elements.differences) {
+    differences.push_back(
+        {{"column", column}, {"loading", loading}, {"unloading", unloading}, {"mesh_error", mesh_error}});
+  }
+  json["elements"] = {{"solver", elements.solver},
+                      {"mesh", elements.mesh},
+                      {"count", elements.count},
+                      {"law_of", law},
+                      {"differences", differences}};
+}
+
 }  // namespace
 
 std::string run_json(const Run& run) {
+  Json json = to_json(run);
+  if (run.elements) set_elements(json, *run.elements);
   // Comments in a table need not be UTF-8: invalid bytes are replaced.
-  return to_json(run).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 void write_run(Run& run, StagedFolder& folder, const std::function<void(const fs::path&)>& draw) {

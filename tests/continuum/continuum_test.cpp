@@ -80,7 +80,7 @@ TEST(ContinuumMaterial, WarnsWhereBricksLock) {
 }
 
 /// Finite elements of a scenario by a program in the place of CalculiX.
-ContinuumRun run_by(const std::string& script, const CheckedScenario& scenario, const TemporaryFolder& folder) {
+Run run_by(const std::string& script, const CheckedScenario& scenario, const TemporaryFolder& folder) {
   write_text(folder.path() / "ccx", "#!/bin/sh\n" + script);
   std::filesystem::permissions(folder.path() / "ccx", std::filesystem::perms::owner_all);
   return run_continuum(
@@ -91,7 +91,7 @@ ContinuumRun run_by(const std::string& script, const CheckedScenario& scenario, 
 /// Displacements of the axial wall, over R0, at which finite elements are computed for a scenario.
 std::vector<double> computed_displacements(const CheckedScenario& scenario) {
   const TemporaryFolder folder;
-  EXPECT_EQ(run_by("", scenario, folder).run.record.status, RunStatus::failed);
+  EXPECT_EQ(run_by("", scenario, folder).record.status, RunStatus::failed);
   std::vector<double> displacements;
   const std::string text = read_text(folder.path() / "continuum.inp");
   const std::string key = "WALL0,3,3,";
@@ -114,9 +114,9 @@ TEST(RunContinuum, GivesEveryClassTheForceOfAWholeWallAndAddsUpTheWork) {
   const TemporaryFolder folder;
   const CheckedScenario scenario = ready("cel.toml", {"loading.configuration=hydrostatic"});
   const TemporaryFolder other;
-  const ContinuumRun die = run_by(k_constant_forces, ready("cel.toml"), folder);
-  ASSERT_EQ(die.run.record.status, RunStatus::complete) << die.run.record.message;
-  const Table& history = die.run.record.history;
+  const auto die = run_by(k_constant_forces, ready("cel.toml"), folder);
+  ASSERT_EQ(die.record.status, RunStatus::complete) << die.record.message;
+  const Table& history = die.record.history;
   const double unit = 1e9 * 0.01 * 0.01 / (1000.0 * 10.0 * 10.0);
   const std::size_t last = history.row_count() - 1;
   EXPECT_NEAR(history.column("axial.force")[last], 8.0 * 3.0 * unit, 1e-9);
@@ -126,8 +126,8 @@ TEST(RunContinuum, GivesEveryClassTheForceOfAWholeWallAndAddsUpTheWork) {
   const double force = 8.0 * 3.0 * unit;
   EXPECT_NEAR(history.column("work")[last], 2.0 * force * (displacement[last] - 0.5 * displacement[1]), 1e-9);
   // Six walls at once are one class, with the state of the walls on the axis.
-  const ContinuumRun six = run_by(k_constant_forces, scenario, other);
-  EXPECT_NEAR(six.run.record.history.column("axial.force")[1], 8.0 * 3.0 * unit, 1e-9);
+  const auto six = run_by(k_constant_forces, scenario, other);
+  EXPECT_NEAR(six.record.history.column("axial.force")[1], 8.0 * 3.0 * unit, 1e-9);
 }
 
 TEST(RunContinuum, CountsAllRowsAsLoadingWhereTheProgramOnlyLoadsAfterAPause) {
@@ -137,9 +137,9 @@ TEST(RunContinuum, CountsAllRowsAsLoadingWhereTheProgramOnlyLoadsAfterAPause) {
       "yield_stress = 5e7\n[loading]\nconfiguration = 'die'\nsteps = [{ hold = true, duration = 1 },\n"
       "{ displacement = 0.1, duration = 1 }, { hold = true, duration = 1 }]\n[output]\npoints = 20\n",
       "pause.toml");
-  const ContinuumRun result = run_by(k_constant_forces, scenario, folder);
-  ASSERT_EQ(result.differences.size(), 4U);
-  for (const ContinuumDifference& difference : result.differences) {
+  const auto result = run_by(k_constant_forces, scenario, folder);
+  ASSERT_EQ(result.elements->differences.size(), 4U);
+  for (const ContinuumDifference& difference : result.elements->differences) {
     EXPECT_FALSE(std::isnan(difference.loading)) << difference.column;
     EXPECT_TRUE(std::isnan(difference.unloading)) << difference.column;
   }
@@ -147,26 +147,25 @@ TEST(RunContinuum, CountsAllRowsAsLoadingWhereTheProgramOnlyLoadsAfterAPause) {
 
 TEST(RunContinuum, KeepsTheLimitAtWhichTheLawStops) {
   const TemporaryFolder folder;
-  const ContinuumRun stopped =
-      run_by(k_constant_forces, ready("cel.toml", {"loading.steps[0].displacement='0.9 R0'"}), folder);
-  EXPECT_EQ(stopped.run.record.status, RunStatus::stopped);
-  EXPECT_TRUE(stopped.run.record.limit);
+  const auto stopped = run_by(k_constant_forces, ready("cel.toml", {"loading.steps[0].displacement='0.9 R0'"}), folder);
+  EXPECT_EQ(stopped.record.status, RunStatus::stopped);
+  EXPECT_TRUE(stopped.record.limit);
 }
 
 TEST(RunContinuum, RecordsWhatTheMaterialLacks) {
   const TemporaryFolder folder;
-  const std::vector<std::string> warnings = run_by("", ready("adhesion.toml"), folder).run.record.warnings;
+  const std::vector<std::string> warnings = run_by("", ready("adhesion.toml"), folder).record.warnings;
   ASSERT_FALSE(warnings.empty());
   EXPECT_TRUE(contains(warnings[0], "adhesion")) << warnings[0];
 }
 
 TEST(RunContinuum, WarnsWhereRowsOfTheRunAreFarApart) {
   const TemporaryFolder folder;
-  const ContinuumRun coarse = run_by("", ready("cel.toml", {"output.points=5"}), folder);
-  ASSERT_EQ(coarse.run.record.warnings.size(), 1U);
-  EXPECT_TRUE(contains(coarse.run.record.warnings[0], "0.08 R0 apart")) << coarse.run.record.warnings[0];
+  const auto coarse = run_by("", ready("cel.toml", {"output.points=5"}), folder);
+  ASSERT_EQ(coarse.record.warnings.size(), 1U);
+  EXPECT_TRUE(contains(coarse.record.warnings[0], "0.08 R0 apart")) << coarse.record.warnings[0];
   const TemporaryFolder other;
-  EXPECT_TRUE(run_by("", ready("cel.toml"), other).run.record.warnings.empty());
+  EXPECT_TRUE(run_by("", ready("cel.toml"), other).record.warnings.empty());
 }
 
 TEST(RunContinuum, ComputesTheTurnsOfTheWallsAndSmallStepsBetween) {
