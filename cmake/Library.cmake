@@ -44,7 +44,7 @@ foreach(header IN LISTS staged_headers)
   file(REMOVE "${law_headers}/${header}")
 endforeach()
 
-monograin_library(monograin ROOMS numerics models scenario scene engine history formula api)
+monograin_library(monograin ROOMS numerics models scenario scene engine history exchange continuum formula api)
 add_library(monograin::monograin ALIAS monograin)
 target_include_directories(monograin PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
                                             "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>")

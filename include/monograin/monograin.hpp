@@ -2,6 +2,7 @@
 #pragma once
 
 #include "monograin/comparison.hpp"
+#include "monograin/continuum.hpp"
 #include "monograin/faults.hpp"
 #include "monograin/history.hpp"
 #include "monograin/models.hpp"

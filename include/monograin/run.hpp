@@ -13,6 +13,8 @@
 
 namespace monograin {
 
+struct ContinuumOptions;
+struct ContinuumResult;
 struct Run;
 
 struct RunOptions {
@@ -51,7 +53,25 @@ class RunResult {
   /// @throws RunInterrupted if the options end the run
   [[nodiscard]] History profile(double time, const RunOptions& options = {}) const;
 
+  /// Writes particle and walls for ParaView, as `monograin plot --vtk` does: run.pvd and the files that it lists, of at
+  /// most 200 instants. Either all files are written or none.
+  /// @param folder  made if it does not exist; files of an earlier particle are replaced, and others stay
+  /// @throws std::invalid_argument for a model without a particle between walls
+  /// @throws std::runtime_error that names the file or folder that cannot be written
+  void write_vtk(const std::filesystem::path& folder) const;
+  /// Input file of LAMMPS for the same test, as `monograin export lammps` writes it.
+  /// @throws std::invalid_argument for a model or options whose law LAMMPS does not have; the message says why
+  [[nodiscard]] std::string lammps_input() const;
+  /// Force over displacement of one wall, as `monograin export table` writes it.
+  /// @param contact_class  name of the class; empty: the first one that moves
+  /// @return columns `branch`, and displacement [m] and force [N] of the class: each branch has one force for each
+  ///         displacement, and ends where the displacement turns
+  /// @throws std::invalid_argument for a model without walls, an unknown class, or one that does not move
+  [[nodiscard]] History force_table(const std::string& contact_class = {}) const;
+
  private:
+  friend ContinuumResult continuum(const RunResult& law, const ContinuumOptions& options);
+
   std::shared_ptr<const Run> run_;
 };
 

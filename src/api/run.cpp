@@ -1,6 +1,13 @@
 #include "monograin/run.hpp"
 
+#include <optional>
+#include <stdexcept>
+#include <string>
+
 #include "api/checked.hpp"
+#include "exchange/force_table.hpp"
+#include "exchange/lammps.hpp"
+#include "exchange/vtk.hpp"
 #include "history/profile.hpp"
 #include "history/run.hpp"
 #include "history/run_files.hpp"
@@ -34,7 +41,22 @@ void RunResult::save(const std::filesystem::path& folder) const {
 }
 
 History RunResult::profile(double time, const RunOptions& options) const {
+  if (run_->elements) throw std::runtime_error("finite elements have no profile; the run of the law may have one");
   return history_of(contact_profiles(run_->scenario, time, interruptible(options.stop)));
+}
+
+void RunResult::write_vtk(const std::filesystem::path& folder) const {
+  save_vtk(run_->scenario, run_->record.history, folder);
+}
+
+std::string RunResult::lammps_input() const {
+  const LammpsLaw law = lammps_law_of(run_->scenario);
+  return monograin::lammps_input(run_->scenario, motion_of(run_->scenario, run_->record.history), law);
+}
+
+History RunResult::force_table(const std::string& contact_class) const {
+  const auto chosen = contact_class.empty() ? std::nullopt : std::optional(contact_class);
+  return history_of(monograin::force_table(motion_of(run_->scenario, run_->record.history), chosen));
 }
 
 RunResult run(const Scenario& scenario, const RunOptions& options) {

@@ -41,7 +41,7 @@ class UsageError : public std::runtime_error {
 /// @param subject  file or run that a fault is of
 /// @throws UsageError if the call throws std::invalid_argument
 template <class Call>
-[[nodiscard]] auto or_usage_error(const std::string& subject, Call&& call) {
+auto or_usage_error(const std::string& subject, Call&& call) {
   try {
     return call();
   } catch (const std::invalid_argument& error) {

@@ -73,11 +73,9 @@ int plot_vtk(const PlotOptions& options) {
   for (const fs::path run : options.runs) {
     const fs::path folder = folder_of(run);
     const fs::path output = options.output.empty() ? folder / "vtk" : fs::path(options.output);
-    StagedFolder staged(output, k_vtk_series);
     const CheckedScenario scenario = scenario_of_run(folder);
     const Table history = figure::read_table(folder / k_run_tables.front());
-    write_vtk(or_usage_error(run.string(), [&] { return motion_of(scenario, history); }), staged.path());
-    staged.publish(staged.age());
+    or_usage_error(run.string(), [&] { save_vtk(scenario, history, output); });
     say("particle -> {}\n", (output / k_vtk_series).string());
   }
   return k_success;

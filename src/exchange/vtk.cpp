@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "exchange/sphere_mesh.hpp"
+#include "history/staged_folder.hpp"
 #include "scenario/text_file.hpp"
 #include "system/resolution.hpp"
 
@@ -214,6 +215,12 @@ void write_vtk(const Motion& motion, const fs::path& folder) {
                   fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
                               "byte_order=\"{}\">\n<Collection>\n{}</Collection>\n</VTKFile>\n",
                               k_byte_order, list));
+}
+
+void save_vtk(const CheckedScenario& scenario, const Table& history, const fs::path& target) {
+  StagedFolder staged(target, k_vtk_series);
+  write_vtk(motion_of(scenario, history), staged.path());
+  staged.publish(staged.age());
 }
 
 }  // namespace monograin

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "exchange/motion.hpp"
 
@@ -21,5 +22,12 @@ inline constexpr std::string_view k_vtk_series = "run.pvd";
 /// @param folder  exists
 /// @throws std::runtime_error naming a file that cannot be written
 void write_vtk(const Motion& motion, const std::filesystem::path& folder);
+
+/// Writes the particle of a recorded run into a folder: all files or none. Files of an earlier particle there are
+/// replaced; others stay.
+/// @param target  made if it does not exist
+/// @throws std::invalid_argument as motion_of() does
+/// @throws std::runtime_error as StagedFolder does
+void save_vtk(const CheckedScenario& scenario, const Table& history, const std::filesystem::path& target);
 
 }  // namespace monograin

@@ -156,6 +156,36 @@ TEST(RunResult, SavesWhatTheProgramLeaves) {
   fs::remove_all(folder);
 }
 
+TEST(RunResult, WritesItsParticleForParaView) {
+  const fs::path folder = fs::temp_directory_path() / "monograin_api_particle";
+  fs::remove_all(folder);
+  Scenario scenario = ready_scenario("die.toml");
+  run(scenario.set("output.points", 5)).write_vtk(folder);
+  EXPECT_NE(text_of(folder / "run.pvd").find("file=\"particle-0000.vtp\""), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder / "walls-0000.vtp"));
+  fs::remove_all(folder);
+  EXPECT_THROW(run(ready_scenario("packing.toml")).write_vtk(folder), std::invalid_argument);
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+TEST(RunResult, IsATestForLammpsWhereLammpsHasTheLaw) {
+  EXPECT_NE(run(ready_scenario("hertz.toml")).lammps_input().find("pair_coeff * * hertz/material"), std::string::npos);
+  EXPECT_THROW(static_cast<void>(run(ready_scenario("cel.toml")).lammps_input()), std::invalid_argument);
+}
+
+TEST(RunResult, HasTheForceOfAWallOverItsDisplacement) {
+  const RunResult result = run(ready_scenario("die.toml"));
+  const History axial = result.force_table();
+  EXPECT_TRUE(std::ranges::equal(axial.names(), std::vector{"branch", "axial.displacement", "axial.force"}));
+  EXPECT_EQ(axial["branch"].front(), 1.0);
+  EXPECT_GT(axial["branch"].back(), 1.0);
+  const auto largest = std::ranges::max(result.history["axial.force"]);
+  EXPECT_EQ(std::ranges::max(axial["axial.force"]), largest);
+  EXPECT_EQ(result.force_table("axial").row_count(), axial.row_count());
+  EXPECT_THROW(static_cast<void>(result.force_table("lateral")), std::invalid_argument) << "these walls do not move";
+  EXPECT_THROW(static_cast<void>(result.force_table("top")), std::invalid_argument);
+}
+
 TEST(History, SuggestsTheColumnThatWasMeant) {
   const RunResult result = run(ready_scenario("hertz.toml"));
   try {
