@@ -51,6 +51,7 @@ class Unlocked {
 void add_errors(py::module_& module);
 void add_history(py::module_& module);
 void add_scenario(py::module_& module);
+void add_continuum(py::module_& module);
 void add_prepared(py::module_& module);
 void add_studies(py::module_& module);
 void add_models(py::module_& module);

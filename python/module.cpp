@@ -12,6 +12,7 @@ PYBIND11_MODULE(_core, module) {
   add_errors(module);
   add_history(module);
   add_scenario(module);
+  add_continuum(module);
   add_prepared(module);
   add_studies(module);
   add_models(module);

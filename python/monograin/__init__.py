@@ -11,6 +11,7 @@ All numbers are in SI units. A str such as ``"30 MPa"`` has a unit of its own.
 from . import laws
 from ._core import __version__
 from .catalogue import Key, Model, Parameter, models, parameters, scenario, scenario_folder, scenarios, schema
+from .elements import Continuum, continuum
 from .errors import Fault, Interrupted, ScenarioError, SolverError
 from .prepared import Prepared
 from .runs import Run, Scenario
@@ -33,6 +34,7 @@ from .tables import Table
 __all__ = [
     "Calibration",
     "Comparison",
+    "Continuum",
     "CurveDifference",
     "Design",
     "ExpectedErrors",
@@ -52,6 +54,7 @@ __all__ = [
     "__version__",
     "calibrate",
     "compare",
+    "continuum",
     "design",
     "laws",
     "models",

@@ -418,9 +418,65 @@ class Run:
 
         Raises:
             RuntimeError: if the model has no profile, the instant is not finite or negative, the run ends before it, or
-                no contact is closed then.
+                no contact is closed then; for a run of finite elements.
         """
+        if self._is_of_elements():
+            raise RuntimeError("finite elements have no profile; the run of the law may have one")
         return Table(self.scenario._core.profile(time))
+
+    @explained
+    def write_vtk(self, folder: Path) -> None:
+        """Writes particle and walls for ParaView, as ``monograin plot --vtk`` does, all files or none.
+
+        ParaView opens the file ``run.pvd``. The other files have particle and walls at up to 200 instants, evenly chosen.
+        Lengths are in m, forces in N and pressures in Pa.
+
+        Args:
+            folder: folder for the files, made if it does not exist. Files of an earlier particle are replaced; others
+                stay.
+
+        Raises:
+            ValueError: for a model without a particle between walls, such as ``packing``, and an empty name.
+            RuntimeError: if a file cannot be written, or the folder holds another result, or a file of yours with the name
+                of one to write.
+        """
+        if not os.fspath(folder):
+            raise ValueError("folder: expected a name, not an empty text")
+        _core.write_vtk(self.scenario._core, self.history._core, os.fspath(folder))
+
+    def to_lammps(self) -> str:
+        """Returns the input file of LAMMPS for the same test, as ``monograin export lammps`` writes it.
+
+        The file has the line ``pair_coeff`` for the material, and repeats the test: a particle at rest, and a plane for
+        each wall, which moves as in this run. It needs the package GRANULAR of LAMMPS.
+
+        >>> pathlib.Path("in.hertz").write_text(run.to_lammps())
+
+        Raises:
+            ValueError: for a model, or an option of it, whose law LAMMPS does not have; the message says why.
+        """
+        return _core.lammps_input(self.scenario._core, self.history._core)
+
+    @explained
+    def force_table(self, contact_class: Optional[str] = None) -> Table:
+        """Returns the force of one wall over its displacement, as ``monograin export table`` writes it.
+
+        Args:
+            contact_class: name of a contact class, such as ``"axial"``; None: the first one that moves.
+
+        Returns:
+            Table with columns ``branch``, the displacement [m] and the force [N] of the class. Branches are numbered from
+            1; each ends where the displacement turns, so that it has one force for each displacement. Instants at which
+            the wall rests are left out. :meth:`Table.to_csv` gives the text of the command's file.
+
+        Raises:
+            ValueError: for a model without walls, an unknown class, or one that does not move.
+        """
+        return Table(_core.force_table(self.scenario._core, self.history._core, contact_class))
+
+    def _is_of_elements(self) -> bool:
+        """Returns True if finite elements computed the run in the place of the scenario's law."""
+        return self.history.header.get("model") == "continuum"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Run):
