@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,14 +17,11 @@
 namespace monograin::python {
 namespace {
 
-/// Table of a study, warnings, and why there is no figure.
-template <class Table>
-using Found = std::tuple<Table, std::vector<std::string>, std::string>;
-
-/// @return the results; None if runs of other shards are missing
-Found<std::optional<History>> sweep(const std::string& file, const std::optional<std::string>& text,
-                                    const std::string& folder, int threads, int shard, int shard_count,
-                                    const std::string& format) {
+/// @return the results, None if runs of other shards are missing; the number of points that constraints exclude;
+///         warnings, and why there is no figure
+std::tuple<std::optional<History>, std::size_t, std::vector<std::string>, std::string> sweep(
+    const std::string& file, const std::optional<std::string>& text, const std::string& folder, int threads, int shard,
+    int shard_count, const std::string& format) {
   study::SweepResult found = run_interruptibly([&](const auto& stop) {
     return study::sweep({file, text, {}}, {.folder = folder,
                                            .threads = threads,
@@ -32,12 +30,15 @@ Found<std::optional<History>> sweep(const std::string& file, const std::optional
                                            .format = format,
                                            .stop = stop});
   });
-  return {found.missing > 0 ? std::nullopt : std::optional(std::move(found.results)), std::move(found.warnings),
-          std::move(found.no_figure)};
+  return {found.missing > 0 ? std::nullopt : std::optional(std::move(found.results)), found.left_out,
+          std::move(found.warnings), std::move(found.no_figure)};
 }
 
-Found<History> sensitivity(const std::string& file, const std::optional<std::string>& text, const std::string& folder,
-                           int threads, double confidence) {
+/// @return the table, warnings, and why there is no figure
+std::tuple<History, std::vector<std::string>, std::string> sensitivity(const std::string& file,
+                                                                       const std::optional<std::string>& text,
+                                                                       const std::string& folder, int threads,
+                                                                       double confidence) {
   study::SensitivityResult found = run_interruptibly([&](const auto& stop) {
     return study::sensitivity({file, text, {}}, {.folder = folder, .threads = threads, .stop = stop}, confidence);
   });

@@ -8,7 +8,7 @@ import json
 import os
 import types
 import warnings
-from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,29 @@ Source = Union[Path, Mapping[str, Any]]
 Curves = Union[Run, Table, Path, Mapping[str, Any], DataFrame]
 
 
+class Sweep(Table):
+    """Results of a sweep: a :class:`Table` with a row for each run, and the number of points without one."""
+
+    __slots__ = ("_left_out",)
+
+    def __init__(self, core: _core.Table, left_out: int) -> None:
+        super().__init__(core)
+        self._left_out = left_out
+
+    @property
+    def left_out(self) -> int:
+        """Number of points of the design that do not meet its constraints. They are not run, and have no row."""
+        return self._left_out
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        make, arguments = super().__reduce__()
+        return (_sweep_of, (make, arguments, self._left_out))
+
+
+def _sweep_of(make: Callable[..., Table], arguments: tuple[Any, ...], left_out: int) -> Sweep:
+    return Sweep(make(*arguments)._core, left_out)
+
+
 @explained
 def sweep(
     source: Source,
@@ -32,7 +55,7 @@ def sweep(
     threads: int = 0,
     shard: tuple[int, int] = (1, 1),
     format: Optional[str] = None,
-) -> Optional[Table]:
+) -> Optional[Sweep]:
     """Runs a sweep on several threads, as ``monograin sweep`` does.
 
     An interrupted sweep goes on from the runs that are in its folder. Results of another sweep there are replaced. Values
@@ -51,7 +74,7 @@ def sweep(
     Returns:
         A row for each run with its keys, ``status``, ``reason``, and the final (``end.axial.force``) and largest
         (``max.axial.force``) value of every column. None if runs of other shards are missing. The table is
-        ``results.csv`` or ``results.h5`` in the folder. If the file has ``[bands]``, percentiles of the histories are
+        ``results.csv`` or ``results.h5`` in the folder; its ``left_out`` counts the points that the constraints exclude. If the file has ``[bands]``, percentiles of the histories are
         ``bands.csv``.
 
     Raises:
@@ -63,9 +86,9 @@ def sweep(
         KeyboardInterrupt: on Ctrl-C. Complete runs stay in the folder, and the next call does the others.
     """
     named_text = _named_text(source, "sweep.toml")
-    results, remarks, no_figure = _core.sweep(*named_text, _folder(folder), threads, *shard, format or "")
+    results, left_out, remarks, no_figure = _core.sweep(*named_text, _folder(folder), threads, *shard, format or "")
     _warn(remarks, no_figure)
-    return None if results is None else Table(results)
+    return None if results is None else Sweep(results, left_out)
 
 
 @explained

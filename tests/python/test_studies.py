@@ -28,6 +28,22 @@ def test_a_sweep_has_the_table_of_the_program(run_program, tmp_path):
     assert table.header["sweep"] == "poisson"
 
 
+def test_a_sweep_tells_how_many_points_the_constraints_exclude(tmp_path):
+    plan = {
+        "scenario": (mg.scenario_folder() / "die.toml").as_posix(),
+        "constraints": ["material.youngs_modulus > 20 * material.yield_stress"],
+        "vary": {
+            "material.youngs_modulus": {"values": [1e9, 2e9]},
+            "material.yield_stress": {"values": [30e6, 60e6, 90e6]},
+        },
+    }
+    table = mg.sweep(plan, tmp_path)
+    assert (len(table), table.left_out) == (4, 2)
+    for again in (pickle.loads(pickle.dumps(table)), copy.deepcopy(table)):
+        assert again == table
+        assert again.left_out == 2
+
+
 def test_results_in_hdf5_are_those_in_csv(tmp_path):
     file = mg.scenario_folder() / "sweeps" / "poisson.toml"
     expected = mg.sweep(file, tmp_path / "csv")
