@@ -53,6 +53,15 @@ study::CalibrationResult calibrate(const std::string& file, const std::optional<
   });
 }
 
+/// @return the table, lines of its rows, why a calibration would refuse the file, and the report
+py::tuple read_data(const std::string& file, const std::string& x, const std::string& y) {
+  const study::DataResult found = [&] {
+    const Unlocked unlocked;
+    return study::read_data(file, x, y);
+  }();
+  return py::make_tuple(found.table, found.lines, found.remarks, found.text);
+}
+
 study::DesignResult design(const std::string& file, const std::optional<std::string>& text, const std::string& folder) {
   return run_interruptibly([&](const auto& stop) {
     return study::design({file, text, {}}, {.folder = folder, .stop = stop});
@@ -86,6 +95,7 @@ void add_studies(py::module_& module) {
       .def_readonly("no_figure", &Fitted::no_figure)
       .def_readonly("fit", &Fitted::fit);
   module.def("calibrate", &calibrate);
+  module.def("read_data", &read_data);
   using Designed = study::DesignResult;
   py::class_<Designed>(module, "Designed")
       .def_readonly("name", &Designed::name)

@@ -126,6 +126,23 @@ struct CalibrationResult {
 [[nodiscard]] CalibrationResult calibrate(const Source& source, const Options& options = {},
                                           std::optional<double> confidence = {});
 
+/// A file of measured data, as a calibration reads it.
+struct DataResult {
+  History table;                     ///< x and y in the units of the file: the rows that have both
+  std::vector<std::size_t> lines;    ///< line of each of these rows in the file, from 1
+  std::vector<std::string> remarks;  ///< why a calibration would refuse the file, a sentence each
+  std::string text;                  ///< separator, columns, and branches of loading, as `monograin data` prints them
+};
+
+/// Reads a file of measured data, as `monograin data` does. Separator, decimal point, headings and units are found in
+/// the file.
+/// @param x  column: heading, or number from 1; empty: the first length, else the first column of numbers
+/// @param y  likewise; empty: the first force, else the next column of numbers
+/// @throws ScenarioError if the file cannot be read, is no table, or has no such column
+/// @throws std::invalid_argument if x and y are one column, or have the same heading
+[[nodiscard]] DataResult read_data(const std::filesystem::path& file, const std::string& x = {},
+                                   const std::string& y = {});
+
 struct DesignResult {
   std::string name;
   std::vector<std::string> programs;            ///< names of all programs

@@ -295,6 +295,54 @@ def calibrate(source: Source, folder: Optional[Path] = None, *, confidence: Opti
     return Calibration(core)
 
 
+class Data(NamedTuple):
+    """A file of measured data, as a calibration reads it. ``print`` shows the report of ``monograin data``.
+
+    Attributes:
+        table: columns x and y with the headings and units of the file: the rows that have both.
+        lines: array of shape (rows,): line of each row in the file, from 1.
+        remarks: why a calibration would refuse the file, a sentence each.
+        text: report: separator, decimal point, columns with units, and branches of loading and unloading.
+    """
+
+    table: Table
+    lines: NDArray[np.int64]
+    remarks: list[str]
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Data) and all(same(a, b) if a is self.lines else a == b for a, b in zip(self, other))
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    def _repr_html_(self) -> str:
+        return self.table._repr_html_()
+
+
+@explained
+def read_data(file: Path, *, x: Union[str, int] = "", y: Union[str, int] = "") -> Data:
+    """Reads a file of measured data, such as one of a testing machine, as ``monograin data`` does.
+
+    Separator, decimal point, headings and units are found in the file. The table can be compared with a run if its units are
+    SI, and can be the data of :func:`calibrate`, whatever they are.
+
+    Args:
+        file: a text file: CSV, or columns between tabs, semicolons or blanks.
+        x: heading or number of a column, from 1; empty: the first column of lengths, else the first one of numbers.
+        y: likewise; empty: the first column of forces, else the next one of numbers.
+
+    Raises:
+        ScenarioError: if the file cannot be read, is no table, or has no such column; with the place.
+        ValueError: if x and y are one column, or have the same heading.
+    """
+    table, lines, remarks, text = _core.read_data(os.fspath(file), str(x), str(y))
+    return Data(Table(table), np.asarray(lines, dtype=np.int64), remarks, text)
+
+
 class ExpectedErrors(NamedTuple):
     """Expected errors of one fit to the measurements of several programs, in SI units.
 

@@ -13,6 +13,7 @@
 #include "scenario/text_file.hpp"
 #include "scenario/units.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/calibrate/data_report.hpp"
 #include "study/identify/identify_files.hpp"
 #include "study/sweep/bands.hpp"
 #include "study/sweep/sensitivity.hpp"
@@ -145,6 +146,22 @@ CalibrationResult calibrate(const Source& source, const Options& options, std::o
   }
   if (staged) result.no_figure = write_calibration(calibration, found, *staged);
   return result;
+}
+
+DataResult read_data(const fs::path& file, const std::string& x, const std::string& y) {
+  DataChoice choice{.x = x, .y = y};
+  choice.x_named = "x =";
+  choice.y_named = "y =";
+  DataReport report = report_of_file(file, choice);
+  if (report.x.number == report.y.number) {
+    throw std::invalid_argument(fmt::format("x and y are both '{}': expected two columns", report.x.name));
+  }
+  std::string text = data_text(report);
+  return {.table = History({{report.x.name, report.x.unit, {}, std::move(report.x.values)},
+                            {report.y.name, report.y.unit, {}, std::move(report.y.values)}}),
+          .lines = std::move(report.lines),
+          .remarks = std::move(report.remarks),
+          .text = std::move(text)};
 }
 
 DesignResult design(const Source& source, const Options& options) {

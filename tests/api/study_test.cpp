@@ -277,5 +277,35 @@ TEST(StudyDesign, NamesTheBestCandidateAndTheErrorsOfAll) {
       RunInterrupted);
 }
 
+TEST(StudyReadData, HasTheRowsThatACalibrationTakes) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "machine.txt",
+             "made by a machine\n\ns [mm];t [s];F [kN]\n0,0;1;0,5\n1,5;2;\n2,5;3;0,75\nEND\n");
+  const DataResult found = read_data(folder.path() / "machine.txt");
+  EXPECT_TRUE(std::ranges::equal(found.table.names(), std::vector{"s", "F"}));
+  EXPECT_EQ(found.table.column("s").unit, "mm");
+  EXPECT_TRUE(std::ranges::equal(found.table["F"], std::vector{0.5, 0.75}));
+  EXPECT_EQ(found.lines, (std::vector<std::size_t>{4, 6}));
+  EXPECT_NE(found.text.find("separator  semicolon"), std::string::npos) << found.text;
+  EXPECT_TRUE(
+      std::ranges::equal(read_data(folder.path() / "machine.txt", "2", "s").table.names(), std::vector{"t", "s"}));
+}
+
+TEST(StudyReadData, RefusesWhatIsNoTableOfTwoColumns) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "d.csv", "s[mm],F[N]\n0,0\n1,2\n");
+  const auto read = [&](const std::string& name, const std::string& x) {
+    return [=, path = folder.path()] { static_cast<void>(read_data(path / name, x)); };
+  };
+  EXPECT_THROW(read("none.csv", "")(), ScenarioError);
+  EXPECT_THROW(read("d.csv", "F")(), std::invalid_argument);
+  try {
+    read("d.csv", "way")();
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const ScenarioError& error) {
+    EXPECT_NE(std::string_view(error.what()).find("x = way"), std::string_view::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace monograin::study

@@ -28,6 +28,36 @@ def test_a_sweep_has_the_table_of_the_program(run_program, tmp_path):
     assert table.header["sweep"] == "poisson"
 
 
+def test_data_of_a_machine_are_read_as_the_program_reads_them(run_program, tmp_path):
+    file = mg.scenario_folder() / "calibrate" / "uniaxial.csv"
+    called = run_program("data", file, cwd=tmp_path)
+    data = mg.read_data(file)
+    assert str(data) == data.text == called.stdout
+    expected = mg.Table.read_csv(file)
+    assert data.table.units == expected.units == {"displacement": "mm", "force": "kN"}
+    assert_array_equal(data.table["force"], expected["force"])
+    assert (data.lines[0], data.remarks) == (4, [])
+    assert data == mg.read_data(file, x=1, y="force") == pickle.loads(pickle.dumps(data))
+    assert data != mg.read_data(file, x="force", y=1)
+    with pytest.raises(mg.ScenarioError, match="x = way: ") as caught:
+        mg.read_data(file, x="way")
+    assert caught.value.faults[0].file == str(file)
+    with pytest.raises(ValueError, match="x and y are both 'displacement': expected two columns"):
+        mg.read_data(file, y="displacement")
+    with pytest.raises(mg.ScenarioError, match="no such file"):
+        mg.read_data(tmp_path / "none.csv")
+
+
+def test_data_of_a_machine_can_be_calibrated(tmp_path):
+    plan = tomllib.loads((mg.scenario_folder() / "calibrate" / "uniaxial.toml").read_text())
+    folder = mg.scenario_folder() / "calibrate"
+    plan["scenario"] = (folder / plan["scenario"]).as_posix()
+    plan["data"]["file"] = (folder / plan["data"]["file"]).as_posix()
+    expected = mg.calibrate(plan)
+    plan["data"]["file"] = mg.read_data(plan["data"]["file"]).table
+    assert mg.calibrate(plan).values == expected.values
+
+
 def test_a_sweep_tells_how_many_points_the_constraints_exclude(tmp_path):
     plan = {
         "scenario": (mg.scenario_folder() / "die.toml").as_posix(),

@@ -90,8 +90,8 @@ std::optional<std::size_t> column_of(const TableLayout& layout, Dimension dimens
   return std::nullopt;
 }
 
-ColumnRequest request_of_choice(const std::string& choice, const char* option, const std::string& file) {
-  ColumnRequest request{.name = choice, .where = {file}, .naming = fmt::format("{} {}", option, shown(choice))};
+ColumnRequest request_of_choice(const std::string& choice, const char* name, const std::string& file) {
+  ColumnRequest request{.name = choice, .where = {file}, .naming = fmt::format("{} {}", name, shown(choice))};
   const bool is_number =
       !choice.empty() && choice.size() < 6 && choice.find_first_not_of("0123456789") == std::string::npos;
   if (is_number) {
@@ -194,8 +194,8 @@ DataReport report_of_file(const fs::path& file, const DataChoice& choice) {
   if (bytes.size() > k_largest_data) throw_fault({report.file}, "the file is too large");
   FaultList faults;
   std::vector<ColumnRequest> wanted;
-  if (!choice.x.empty()) wanted.push_back(request_of_choice(choice.x, "--x", report.file));
-  if (!choice.y.empty()) wanted.push_back(request_of_choice(choice.y, "--y", report.file));
+  if (!choice.x.empty()) wanted.push_back(request_of_choice(choice.x, choice.x_named, report.file));
+  if (!choice.y.empty()) wanted.push_back(request_of_choice(choice.y, choice.y_named, report.file));
   const MeasuredData first = parse_measured(bytes, report.file, wanted, faults, {.most_missing = 1.0});
   faults.throw_if_any();
   report.layout = first.layout;

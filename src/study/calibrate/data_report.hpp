@@ -63,6 +63,8 @@ struct DataChoice {
   std::string y;
   Dimension x_dimension = Dimension::length;
   Dimension y_dimension = Dimension::force;
+  const char* x_named = "--x";  ///< names of x and y in messages
+  const char* y_named = "--y";
 };
 
 /// "2 lines from line 15"; empty if there are none.
