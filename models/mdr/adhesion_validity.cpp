@@ -8,14 +8,9 @@ namespace {
 
 using std::numbers::pi;
 
-// Constants of the fits, all digits as printed.
-constexpr double k_peak_onset = 0.135;  // of F.1
-constexpr double k_ring_onset = 0.15;   // of F.2 and F.3
+// Constants of F.1, all digits as printed.
+constexpr double k_peak_onset = 0.135;
 constexpr double k_peak_factor = 1.75;
-constexpr double k_ring_factor = 1.1;
-constexpr double k_depth_factor = 0.1025;
-constexpr double k_depth_middle = 0.18;
-constexpr double k_depth_exponent = 1.175;
 
 /// Contact diameters that a plastic zone has to fit into, for small-scale yielding (F.4).
 constexpr double k_zones_per_diameter = 15.0;
@@ -25,20 +20,6 @@ constexpr double k_zones_per_diameter = 15.0;
 double peak_radius_over_initial_radius(double displacement_over_radius, double yield_overlap_ratio) noexcept {
   const double x = displacement_over_radius - yield_overlap_ratio - k_peak_onset;
   return x <= 0.0 ? 0.0 : k_peak_factor * std::pow(x, 0.75);
-}
-
-double peak_radius_over_contact_radius(double displacement_over_radius, double yield_overlap_ratio) noexcept {
-  const double x = displacement_over_radius - yield_overlap_ratio - k_ring_onset;
-  return x <= 0.0 ? 0.0 : k_ring_factor * std::cbrt(x);
-}
-
-double peak_depth_over_initial_radius(double displacement_over_radius, double yield_overlap_ratio,
-                                      double modulus_over_yield) noexcept {
-  const double x = displacement_over_radius - yield_overlap_ratio - k_ring_onset;
-  if (x <= 0.0 || x >= 2.0 * k_depth_middle) return 0.0;
-  // The printed difference, written as the parabola through both its zeros.
-  const double parabola = k_depth_factor * x * (2.0 * k_depth_middle - x) / (k_depth_middle * k_depth_middle);
-  return parabola * std::pow(modulus_over_yield, -k_depth_exponent);
 }
 
 double plastic_zone_size(double composite_modulus, double surface_energy, double yield_stress,
