@@ -514,15 +514,14 @@ bool ModeSearch::resolve_contact(std::size_t i, double xi, std::span<double> y, 
   const std::string_view why = xi == 0.0 ? "load-reversal" : "retreat";
   switch (p_.branch(i).regime) {
     case Regime::open:
-      if (is_left_[i] || !(tends.moves_in || tends.is_pressed) || !closes_at(k_made)) return false;
+    case Regime::separated: {
+      const bool is_dent = p_.branch(i).regime == Regime::separated;
+      const bool comes_in = tends.is_pressed || (is_dent ? tends.closes : tends.moves_in);
+      if (is_left_[i] || !comes_in || !closes_at(is_dent ? k_dent_touched : k_made)) return false;
       p_.set_branch(i, p_.branch(i).made());
-      made_.push_back(event_of("contact-made", i));
+      (is_dent ? log : made_).push_back(event_of(is_dent ? "dent-touched" : "contact-made", i));
       return true;
-    case Regime::separated:
-      if (is_left_[i] || !(tends.closes || tends.is_pressed) || !closes_at(k_dent_touched)) return false;
-      p_.set_branch(i, p_.branch(i).made());
-      log.push_back(event_of("dent-touched", i));
-      return true;
+    }
     case Regime::elastic:
       if (resolve_elastic(i, xi, tends, log)) return true;
       if (is_idle(p_, i)) return false;

@@ -41,55 +41,44 @@ System::System(std::shared_ptr<const Setup> setup)
 void System::observe(double xi, std::span<const double> y, std::span<double> values) {
   const Evaluation& at = now_.particle.at_state(xi, y);
   const double length = setup_->length_unit();
-  const double force_unit = setup_->force_unit();
   values[0] = (1.0 + at.growth) * length;
   values[1] = 4.0 * pi / 3.0 * length * length * length * at.volume.volume_ratio();
   values = values.subspan(2);
-  const auto row_of = [&](std::size_t i) -> contacts::VisibleContact {
-    const Contact& c = visible_contact(i);
-    const double area = pi * c.contact_radius * c.contact_radius;
-    return {.displacement = at.contacts[i].wall_displacement * length,
-            .overlap = at.contacts[i].overlap * length,
-            .force = c.force * force_unit,
-            .contact_radius = c.contact_radius * length,
-            .pressure = area > 0.0 ? c.force / area * setup_->stress_unit() : 0.0,
-            .regime = regime_word(now_.particle.branch(i))};
-  };
   contacts::Energies energies = contacts::k_no_energies;
   if (has_energies()) {
-    const double energy_unit = force_unit * length;
+    const double energy_unit = setup_->force_unit() * length;
     energies = {(y[k_work] + at.force_work) * energy_unit,
                 now_.particle.energy(PlasticPart::recoverable) * energy_unit};
   }
-  columns_.write(energies, now_.particle.size(), row_of, values);
+  columns_.write(
+      energies, now_.particle.size(), [this](std::size_t i) { return visible(i); }, values);
   if (!setup_->settings.centre_is_free) return;
   const FreeCentre& centre = now_.particle.centre();
   contacts::write_centre_columns(centre.in_space(centre_of(y, centre.free_directions())) * length, values);
 }
 
-/// The contact that a row of the history shows.
-const Contact& System::visible_contact(std::size_t i) const {
-  static constexpr Contact none;
+/// What a row of the history shows of a contact.
+contacts::VisibleContact System::visible(std::size_t i) const {
   const Instant& now = now_.particle.contact(i);
   // The overlap is the sum of the approach and the growth, which is no larger than |approach| + |overlap|.
   const double magnitude = 2.0 * std::abs(now.approach) + std::abs(now.overlap);
   const bool is_visible =
       now_.particle.branch(i).is_visible(setup_->law, now_.particle.at().growth, now.overlap, magnitude);
-  return is_visible ? now.contact : none;
+  const Contact contact = is_visible ? now.contact : Contact{};
+  const double area = pi * contact.contact_radius * contact.contact_radius;
+  return {.displacement = now.wall_displacement * setup_->length_unit(),
+          .overlap = now.overlap * setup_->length_unit(),
+          .force = contact.force * setup_->force_unit(),
+          .contact_radius = contact.contact_radius * setup_->length_unit(),
+          .pressure = area > 0.0 ? contact.force / area * setup_->stress_unit() : 0.0,
+          .regime = regime_word(now_.particle.branch(i))};
 }
 
 double System::quantity(Quantity quantity, int contact_class, double xi, std::span<const double> y) {
   now_.particle.at_state(xi, y);
-  const auto i = static_cast<std::size_t>(contact_class);
-  const Contact& contact = visible_contact(i);
-  const double length = setup_->length_unit();
-  const double area = pi * contact.contact_radius * contact.contact_radius;
-  return quantity_of({.force = contact.force * setup_->stress_unit() * length * length,
-                      .displacement = now_.particle.contact(i).wall_displacement * length,
-                      .pressure = area > 0.0 ? contact.force / area * setup_->stress_unit() : 0.0,
-                      .contact_radius = contact.contact_radius * length,
-                      .apparent_radius = (1.0 + y[k_growth]) * length},
-                     quantity);
+  return quantity_of(
+      contacts::wall_of(visible(static_cast<std::size_t>(contact_class)), (1.0 + y[k_growth]) * setup_->length_unit()),
+      quantity);
 }
 
 std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {

@@ -69,7 +69,7 @@ class System final : public HybridSystem {
   template <class Search>
   void decide_mode(std::span<double> y, Search&& search);
   void stick_under_force(std::span<const double> y, std::vector<Event>& log);
-  [[nodiscard]] const Contact& visible_contact(std::size_t i) const;
+  [[nodiscard]] contacts::VisibleContact visible(std::size_t i) const;
   [[nodiscard]] std::optional<DomainEnd> reach_centre_at_once(double xi, std::span<const double> y);
 
   std::shared_ptr<const Setup> setup_;
