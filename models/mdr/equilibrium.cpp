@@ -82,7 +82,7 @@ void record_walls(const Particle& p, double xi, std::span<double> y) noexcept {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.setup().classes[i].takes_force && !p.is_force_controlled(i))
       y[p.setup().wall_index[i]] =
-          p.walls().displacement(i, xi) + p.centre().approach_by_centre(i, y.subspan(k_centre));
+          p.prescribed_displacement(i, xi) + p.centre().approach_by_centre(i, y.subspan(k_centre));
   }
 }
 

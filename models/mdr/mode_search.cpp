@@ -382,10 +382,6 @@ void ModeSearch::freeze_mode(double xi, std::span<double> y) {
   if (!p_.centre().is_free()) return;
   p_.mode.held_centre = centre_of(y, p_.centre().free_directions());
   p_.mode.unconstrained = unconstrained_directions(p_);
-  for (std::size_t i = 0; i < p_.size(); ++i) {
-    const bool may_pull = !p_.branch(i).edge.follows();
-    p_.set_bears(i, !p_.centre().acts(i) || is_supported(p_, i) || (may_pull && is_supported(p_, i, -1.0)));
-  }
 }
 
 /// True if the radius starts to grow, or goes on growing, at this instant.

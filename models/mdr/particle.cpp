@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "mdr/support.hpp"
 #include "system/limit.hpp"
 #include "system/resolution.hpp"
 
@@ -17,7 +16,7 @@ constexpr double k_at_pull_off = 1e-9;
 
 }  // namespace
 
-Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)), walls_(setup_->classes.size()) {
+Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)), drives_(setup_->classes.size()) {
   const std::size_t count = setup_->classes.size();
   branches_.resize(count);
   at_.contacts.resize(count);
@@ -30,7 +29,6 @@ void Particle::start() {
   mode.is_growing = false;
   mode.held_growth = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {
-    walls_.set_bears(i, true);
     branches_[i] = {};
     branches_[i].resting = -setup_->classes[i].gap / setup_->length_unit();
   }
@@ -38,8 +36,19 @@ void Particle::start() {
 }
 
 void Particle::set_drives(std::span<const Ramp> ramps) {
-  walls_.set_drives(*setup_, ramps);
+  for (std::size_t i = 0; i < size(); ++i) {
+    const bool is_force = ramps[i].control == Control::force;
+    drives_[i] = {ramps[i], is_force ? setup_->force_unit() : setup_->length_unit()};
+  }
   note_change();
+}
+
+double Particle::speed_scale() const noexcept {
+  double scale = 0.0;
+  for (const contacts::WallDrive& drive : drives_) {
+    if (!drive.is_force_controlled()) scale = std::max(scale, std::abs(drive.rate()));
+  }
+  return scale > 0.0 ? scale : 1.0;
 }
 
 void Particle::set_branch(std::size_t i, const ContactBranch& branch) {
@@ -49,12 +58,6 @@ void Particle::set_branch(std::size_t i, const ContactBranch& branch) {
 
 void Particle::set_branches(const std::vector<ContactBranch>& branches) {
   branches_ = branches;
-  note_change();
-}
-
-void Particle::set_bears(std::size_t i, bool bears) {
-  if (walls_.bears(i) == bears) return;
-  walls_.set_bears(i, bears);
   note_change();
 }
 
@@ -73,7 +76,7 @@ const Evaluation& Particle::try_state(double xi, std::span<const double> y) {
   for (std::size_t i = 0; i < size(); ++i) {
     const double by_centre = centre().approach_by_centre(i, y.subspan(k_centre));
     // The unknown of a wall under force is its approach.
-    const double known = is_force_controlled(i) ? y[setup_->wall_index[i]] : walls_.displacement(i, xi);
+    const double known = is_force_controlled(i) ? y[setup_->wall_index[i]] : prescribed_displacement(i, xi);
     at_.contacts[i].wall_displacement = is_force_controlled(i) ? known - by_centre : known;
     evaluate_contact(i, is_force_controlled(i) ? known : known + by_centre, at_.growth);
   }
@@ -149,7 +152,7 @@ void Particle::sum_up(double xi) {
     if (is_under_force) {
       power -= count(i) * now.wall_displacement * speed;
       force_work += count(i) * drive(i).value(xi) * now.wall_displacement;
-    } else if (walls_.bears(i)) {
+    } else {
       power += count(i) * now.contact.force * speed;
     }
     if (is_free) load_centre(i);
@@ -170,11 +173,8 @@ void Particle::load_centre(std::size_t i) {
   const Contact& c = contact(i).contact;
   const double stiffness = branch.regularized_stiffness(law(), c);
   const double speed = drive(i).rate();
-  CentreLoad load{.count = count(i)};
-  if (!is_negligible_and_unsupported(i)) {
-    load.force = c.force;
-    load.force_by_time = is_force_controlled(i) ? speed : stiffness * speed;
-  }
+  CentreLoad load{
+      .count = count(i), .force = c.force, .force_by_time = is_force_controlled(i) ? speed : stiffness * speed};
   if (!is_force_controlled(i)) {
     double by_radius = c.by_radius;
     if (branch.regime == Regime::unloading && branch.edge.follows() && c.by_overlap < stiffness) {
@@ -273,12 +273,6 @@ double Particle::force_round_off() const {
     sum += count(i) * branches_[i].reference_stiffness(law(), at_.growth, contact(i).contact) * length;
   }
   return *(force_round_off_ = k_round_off * sum);
-}
-
-/// True for a prescribed force that is round-off beside the others and that no contact supports. Its load on the centre
-/// is left out: it would only push the centre off an idle wall, which then comes back.
-bool Particle::is_negligible_and_unsupported(std::size_t i) {
-  return walls_.may_be_negligible(i) && !is_supported(*this, i, 1.0, supports_);
 }
 
 }  // namespace monograin::mdr

@@ -10,7 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "mdr/walls.hpp"
+#include "contacts/wall_drive.hpp"
+#include "mdr/setup.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
@@ -80,9 +81,15 @@ class Particle {
   // Program.
 
   void set_drives(std::span<const Ramp> ramps);
-  [[nodiscard]] const Walls& walls() const noexcept { return walls_; }
-  [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return walls_.drive(i); }
-  [[nodiscard]] bool is_force_controlled(std::size_t i) const noexcept { return walls_.is_force_controlled(i); }
+  [[nodiscard]] const contacts::WallDrive& drive(std::size_t i) const noexcept { return drives_[i]; }
+  [[nodiscard]] bool is_force_controlled(std::size_t i) const noexcept { return drives_[i].is_force_controlled(); }
+  /// Largest rate of a wall under displacement control; 1 where none moves.
+  [[nodiscard]] double speed_scale() const noexcept;
+  /// Prescribed displacement of a wall towards the initial position of the centre.
+  [[nodiscard]] double prescribed_displacement(std::size_t i, double xi) const noexcept {
+    // As exact as std::lerp, which takes longer than the rest of an evaluation.
+    return xi == 1.0 ? drives_[i].end() : drives_[i].start() + xi * drives_[i].rate();
+  }
 
   // Branches and mode.
 
@@ -95,9 +102,6 @@ class Particle {
   [[nodiscard]] bool takes_part(std::size_t i) const noexcept {
     return mdr::takes_part(setup_->settings.radius_rule, branches_[i].regime);
   }
-  /// Marks a contact whose push no other contact can balance as one that does not bear. In equilibrium its force is
-  /// zero; the search for the balance leaves it the round-off of other forces, which the power does not count.
-  void set_bears(std::size_t i, bool bears);
 
   Mode mode{};
 
@@ -141,7 +145,6 @@ class Particle {
   void sum_up(double xi);
   void load_centre(std::size_t i);
   void set_rates_under_force(std::size_t i);
-  [[nodiscard]] bool is_negligible_and_unsupported(std::size_t i);
   /// Outdates cached results when drives, branches or walls change.
   void note_change() noexcept {
     ++revision_;
@@ -149,8 +152,7 @@ class Particle {
   }
 
   std::shared_ptr<const Setup> setup_;
-  Walls walls_;
-  std::vector<CentreVector> supports_;  ///< work space of is_negligible_and_unsupported()
+  std::vector<contacts::WallDrive> drives_;
   std::vector<ContactBranch> branches_;
   std::uint64_t revision_ = 0;  ///< counts changes of all that an evaluation depends on beside the state
   Evaluation at_;

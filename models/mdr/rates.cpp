@@ -28,13 +28,13 @@ double inward_rate(const Particle& p, std::size_t i, const Motion& motion) noexc
 }
 
 double wall_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  if (!p.is_force_controlled(i)) return inward_rate(p, i, motion) / p.walls().speed_scale();
+  if (!p.is_force_controlled(i)) return inward_rate(p, i, motion) / p.speed_scale();
   const Contact& c = p.contact(i).contact;
   return loaded_rate(p, p.drive(i).rate(), c.by_overlap + c.by_radius, motion.growth_rate);
 }
 
 double overlap_rate(const Particle& p, std::size_t i, const Motion& motion) noexcept {
-  if (!p.is_force_controlled(i)) return (inward_rate(p, i, motion) + motion.growth_rate) / p.walls().speed_scale();
+  if (!p.is_force_controlled(i)) return (inward_rate(p, i, motion) + motion.growth_rate) / p.speed_scale();
   return loaded_rate(p, p.drive(i).rate(), p.contact(i).contact.by_radius, motion.growth_rate);
 }
 
@@ -61,7 +61,7 @@ double edge_rate(const Particle& p, std::size_t i, const Motion& motion) {
 
 double force_rate(const Particle& p, std::size_t i, const Motion& motion) {
   const Contact& c = p.contact(i).contact;
-  const double scale = p.branch(i).reference_stiffness(p.law(), p.at().growth, c) * p.walls().speed_scale();
+  const double scale = p.branch(i).reference_stiffness(p.law(), p.at().growth, c) * p.speed_scale();
   const double rate =
       c.by_overlap * (inward_rate(p, i, motion) + motion.growth_rate) + c.by_radius * motion.growth_rate;
   return scale > 0.0 ? rate / scale : 0.0;
@@ -85,7 +85,7 @@ bool gate_is_open(const Particle& p, const Motion& motion) {
     if (!p.takes_part(i)) continue;
     // Next to stiff contacts the rate of an idle contact loses digits.
     const ContactMotion drive{.inward_rate = inward_rate(p, i, motion),
-                              .least_rate = (is_idle(p, i) ? k_at_rest : k_zero_guard) * p.walls().speed_scale(),
+                              .least_rate = (is_idle(p, i) ? k_at_rest : k_zero_guard) * p.speed_scale(),
                               .is_force_controlled = p.is_force_controlled(i),
                               .rises = p.drive(i).rate() > 0.0,
                               .is_on_primary_branch = p.branch(i).is_on_primary_branch};

@@ -197,19 +197,14 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
 
 }  // namespace
 
-bool is_supported(const Particle& p, std::size_t i, double side) {
+bool is_supported(const Particle& p, std::size_t i) {
   std::vector<CentreVector> others;
-  return is_supported(p, i, side, others);
-}
-
-bool is_supported(const Particle& p, std::size_t i, double side, std::vector<CentreVector>& others) {
-  others.clear();
   for (std::size_t j = 0; j < p.size(); ++j) {
     if (j == i || !p.branch(j).touches() || !p.centre().acts(j)) continue;
     others.push_back(p.centre().mean_normal(j).normalized());
     if (!p.branch(j).edge.follows()) others.emplace_back(-p.centre().mean_normal(j).normalized());
   }
-  return in_reaction_cone(side * p.centre().mean_normal(i), others);
+  return in_reaction_cone(p.centre().mean_normal(i), others);
 }
 
 CentreMatrix unconstrained_directions(Particle& p) {

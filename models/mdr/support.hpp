@@ -11,12 +11,7 @@ namespace monograin::mdr {
 
 /// True if the other touching contacts can balance the push of contact i on the free centre. Contacts whose edges stick
 /// or peel can pull as well.
-/// @param side  -1: a pull of contact i instead
-[[nodiscard]] bool is_supported(const Particle& p, std::size_t i, double side = 1.0);
-/// True if the other touching contacts can balance the push of contact i, as the other overload says; does not allocate
-/// once the work space is large enough.
-/// @param others  work space
-[[nodiscard]] bool is_supported(const Particle& p, std::size_t i, double side, std::vector<CentreVector>& others);
+[[nodiscard]] bool is_supported(const Particle& p, std::size_t i);
 /// Projector on the directions in which no touching contact under displacement control constrains the centre.
 [[nodiscard]] CentreMatrix unconstrained_directions(Particle& p);
 /// Sum of the prescribed forces of touching walls on a free centre, at the step coordinate xi.
