@@ -349,6 +349,7 @@ TEST_F(UserFiles, AFigureThatGnuplotCannotDrawLeavesTheOldOneWhole) {
   ASSERT_EQ(monograin("plot r -o f.svg").code, 0);
   const std::vector<std::string> before{text("f.svg"), text("f.gp"), text("f.dat")};
   ASSERT_EQ(monograin("run small.toml --set output.points=7 -o r").code, 0);
+  fs::create_directory(path("bin"));
   write_text(path("bin/gnuplot"), "#!/bin/sh\necho out of ink\nexit 1\n");
   fs::permissions(path("bin/gnuplot"), fs::perms::owner_all);
   const Outcome outcome = shell("PATH=$PWD/bin:$PATH; monograin plot r -o f.svg");
