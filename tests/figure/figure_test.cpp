@@ -254,13 +254,14 @@ TEST_F(Figure, WithoutGnuplotSaysWhatToInstallAndWritesNothing) {
   EXPECT_FALSE(fs::exists(in_folder("out")));
 }
 
-TEST_F(Figure, NamesTheScriptWhenGnuplotFailsAndKeepsTheOldFigure) {
+TEST_F(Figure, NamesTheFigureThatGnuplotCannotDrawAndKeepsTheOldOne) {
   write(in_folder("a.svg"), "old");
   const Environment path("PATH", false_gnuplot("echo 'line 3: no such terminal'; exit 1").string());
   const std::string fault = fault_of({run()}, in_folder("a.svg"));
-  EXPECT_NE(fault.find(in_folder("a.gp").string()), std::string::npos) << fault;
+  EXPECT_NE(fault.find("gnuplot could not draw " + in_folder("a.svg").string()), std::string::npos) << fault;
   EXPECT_NE(fault.find("no such terminal"), std::string::npos) << fault;
   EXPECT_EQ(read_text(in_folder("a.svg")), "old");
+  for (const char* name : {"a.gp", "a.dat"}) EXPECT_FALSE(fs::exists(in_folder(name))) << name;
 }
 
 constexpr const char* k_packing_history =
