@@ -103,6 +103,8 @@ class Contacts {
   [[nodiscard]] double weight(std::size_t j) const noexcept { return weights_[j]; }
   /// Mean normal of a class along the free directions; 0 beyond their number.
   [[nodiscard]] const Eigen::Vector3d& mean_normal(std::size_t j) const noexcept { return mean_normals_[j]; }
+  /// Neighbours of the first wall of a class.
+  [[nodiscard]] std::span<const Neighbours> neighbours(std::size_t j) const noexcept { return neighbours_[j]; }
   /// Displacement of the centre in a state, along the free directions.
   [[nodiscard]] Eigen::Vector3d centre_of(std::span<const double> y) const;
   /// Approach that a displacement of the centre adds to that of a wall.

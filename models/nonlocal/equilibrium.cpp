@@ -21,12 +21,6 @@ constexpr double k_past_balance = 0.5;  // slope of the energy past its minimum 
 // Smallest margin, and smallest contact radius over R, that a search along a path resolves: the path ends at the limit
 // of applicability, or where the contacts open.
 constexpr double k_no_margin = 5e-4;
-// The margin falls like the root of the distance to the fold: a path on which it has fallen below the second of these
-// values from above the first ends within about a hundredth of its length so far.
-constexpr double k_clear_margin = 1e-2;
-constexpr double k_small_margin = 1e-3;
-constexpr double k_far = 0.1;              // rest of a path, over its length so far, that lies beyond such an end
-constexpr int k_rejections_to_a_test = 5;  // rejected steps from one test of the margin to the next
 constexpr double k_no_contact = 5e-7;
 
 /// True if the net force is no larger than the resolution of s makes it. Idle contacts are no deeper than round-off,
@@ -97,12 +91,10 @@ void EquilibriumSearch::approach_in_steps(Contacts& contacts, std::span<double> 
   std::ranges::copy(y, state_.begin());
   set_targets_of(contacts, y, targets_, starts_);
   const Eigen::Vector3d imbalance = contacts.net_force(contacts.evaluate(y).forces);
-  const bool is_clear = contacts.least_pivot(y, k_clear_margin) > 0.0;
 
   double done = 0.0;
   double step = 0.5;
   int round_offs = 0;
-  int rejections = 0;
   for (int steps = 1; done < 1.0; ++steps) {
     const double next = std::min(1.0, done + step);
     set_targets_between(contacts, starts_, targets_, next, between_);
@@ -117,9 +109,6 @@ void EquilibriumSearch::approach_in_steps(Contacts& contacts, std::span<double> 
       continue;
     }
     step *= 0.5;
-    const bool is_far = ++rejections % k_rejections_to_a_test == 0 && 1.0 - done > k_far * done;
-    if (is_far && is_clear && !(contacts.least_pivot(state_, k_small_margin) > 0.0))
-      throw DomainError({Limit::applicability, -1, "margin", contacts.margin(state_)});
     // A path that also accepts short steps now and then may still not arrive.
     const bool may_go_on = step > k_least_step && steps < k_most_steps;
     if (is_on_branch && is_balanced_but_for_round_off(contacts, trial_) &&

@@ -12,28 +12,10 @@ namespace {
 
 int as_int(std::size_t index) noexcept { return static_cast<int>(index); }
 
-/// Angles at which walls of two classes may meet on the surface, each listed once.
-/// @param is_one  true if both classes are the same one
-std::vector<double> meeting_angles(const ContactClass& first, const ContactClass& second, bool is_one) {
-  std::vector<double> angles;
-  for (std::size_t m = 0; m < first.normals.size(); ++m) {
-    for (std::size_t n = is_one ? m + 1 : 0; n < second.normals.size(); ++n) {
-      const double angle = angle_between(first.normals[m], second.normals[n]);
-      const bool is_known =
-          std::ranges::any_of(angles, [&](double other) { return std::abs(other - angle) < k_same_direction; });
-      if (!is_known && angle < std::numbers::pi - k_same_direction) angles.push_back(angle);
-    }
-  }
-  return angles;
-}
-
 /// Distance of the state of Particle::evaluate_contacts() from a limit; negative beyond it.
 double limit_value(Particle& p, const Guard& guard, double xi) {
-  const Scales& scales = p.scales();
   if (guard.kind == k_radius) {
-    const ContactState& contact = p.contact(guard.list_index());
-    return scales.greatest_approach ? 1.0 - contact.approach / *scales.greatest_approach
-                                    : scales.widest - contact.contact_radius;
+    return p.scales().widest - p.contact(guard.list_index()).contact_radius;
   }
   if (guard.kind == k_centre) return 1.0 - p.depth(guard.list_index(), xi);
   // Vanishes where the margin is k_margin_of_fold, in whatever order the walls are eliminated.
@@ -42,11 +24,13 @@ double limit_value(Particle& p, const Guard& guard, double xi) {
 
 }  // namespace
 
-std::vector<Pair> pairs_of(std::span<const ContactClass> classes) {
+std::vector<Pair> pairs_of(const Contacts& contacts) {
   std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    for (std::size_t j = i; j < classes.size(); ++j) {
-      for (const double angle : meeting_angles(classes[i], classes[j], i == j)) pairs.push_back({i, j, angle});
+  for (std::size_t i = 0; i < contacts.class_count(); ++i) {
+    for (const Neighbours& alike : contacts.neighbours(i)) {
+      // Opposite walls never meet.
+      if (alike.contact_class >= i && alike.angle < std::numbers::pi - k_same_direction)
+        pairs.push_back({i, alike.contact_class, alike.angle});
     }
   }
   return pairs;

@@ -39,12 +39,12 @@ struct Pair {
   bool has_impinged = false;
 };
 
-[[nodiscard]] std::vector<Pair> pairs_of(std::span<const ContactClass> classes);
+[[nodiscard]] std::vector<Pair> pairs_of(const Contacts& contacts);
 
 /// Set of the guards that are alive until the next transition or the end of the step.
 class GuardSet {
  public:
-  explicit GuardSet(std::span<const ContactClass> classes) : pairs_(pairs_of(classes)), edge_angles_(classes.size()) {}
+  explicit GuardSet(const Contacts& contacts) : pairs_(pairs_of(contacts)), edge_angles_(contacts.class_count()) {}
 
   /// Forgets the events of the last run.
   void start();

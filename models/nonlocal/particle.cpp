@@ -166,7 +166,8 @@ double Particle::leave_singularity(double xi, std::span<double> y) {
     if (!is_force_controlled(i)) continue;
     const double end = end_of_force(i);
     const bool begins = state_[i] <= scales_.touch && prescribed(i, ahead) > prescribed(i, xi);
-    if (begins && support_.may_be_held(contacts_, ramps_, state_, k_just_lost * scales_.touch)) later = ahead;
+    // A contact is lost at the touch tolerance; the rest allows for the error of that event.
+    if (begins && support_.may_be_held(contacts_, ramps_, state_, 2.0 * scales_.touch)) later = ahead;
     if (end > xi && end - xi < 2.0 * k_end_of_force) later = end;
   }
   if (later == xi) return xi;

@@ -21,9 +21,6 @@ namespace monograin::nonlocal {
 
 /// An integrator stops at this distance in xi before a force that supports a free centre vanishes.
 inline constexpr double k_end_of_force = 1e-8;
-/// Gap up to which a wall counts as just lost, over the touch tolerance. A contact is lost at that tolerance; the rest
-/// allows for the error of that event.
-inline constexpr double k_just_lost = 2.0;
 
 /// State of the classes between two transitions.
 struct Mode {

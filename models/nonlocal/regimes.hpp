@@ -10,16 +10,11 @@
 namespace monograin::nonlocal {
 
 /// Sets the regimes at the start of a step, from the state evaluated last. Touching walls belong to the side to which
-/// they go. At a fixed centre the gap of an open wall is exact up to round-off: its guard fires when contact is made,
-/// which may be much later.
+/// they go.
 /// @param is_first_step  walls that touch the fresh particle are in contact from the start, without an event
 void resolve_regimes(Particle& p, std::span<const ContactClass> classes, bool is_first_step, std::vector<Event>& log);
 /// Marks the walls that touch in the state evaluated last. A wall loses its mark once its gap exceeds Scales::idle.
 void mark_touching(Particle& p);
-/// Applies the transitions of guards of contacts that have fired.
-/// @return false if nothing changes that the history shows
-bool apply_to_contact(Particle& p, const Guard& guard, std::span<const Guard> fired, double xi,
-                      std::span<const double> y);
 /// Switches the regime of contacts that are on another side in the exact state, evaluated last, than in the integrated
 /// one; their guards would not cross any more. At a fixed centre, a wall at which the surface comes to rest carries
 /// nothing, as before it was pressed.

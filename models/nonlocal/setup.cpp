@@ -48,10 +48,7 @@ Scales scales_of(const Settings& settings, std::span<const ContactClass> classes
   scales.touch = settings.centre == Centre::free ? k_touch_of_free_centre * scales.depth : k_touch * reach;
   scales.guard_unit = std::min(scales.depth, scales.touch / k_guard_at_touch);
   scales.idle = k_idle * scales.depth;
-  if (settings.model.terms == Terms::all) {
-    scales.widest = k_widest_of_all_terms;
-    scales.greatest_approach = contacts.law().at(scales.widest * scales.widest).approach;
-  }
+  if (settings.model.terms == Terms::all) scales.widest = k_widest_of_all_terms;
   return scales;
 }
 

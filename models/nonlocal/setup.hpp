@@ -1,7 +1,6 @@
 /// Set-up of the nonlocal system: what it is made from, its scales, unknowns and columns.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,13 +27,12 @@ inline constexpr double k_force_power = 1.5;
 
 /// Limits of round-off, of idle contacts and of wide contacts, from the program's reach.
 struct Scales {
-  double depth = 1.0;                         ///< of the deepest contact
-  double touch = 0.0;                         ///< touch tolerance: |s| below this is round-off
-  double guard_unit = 1.0;                    ///< unit of |s| in guards of contacts
-  double idle = 0.0;                          ///< least s of a contact that supports a free centre
-  double widest = 1.0;                        ///< largest contact radius over R0 for which states exist
-  std::optional<double> greatest_approach{};  ///< approach at `widest`, if the radius there has too few digits
-  bool is_below_resolution = false;           ///< no contact of the program is deeper than round-off
+  double depth = 1.0;                ///< of the deepest contact
+  double touch = 0.0;                ///< touch tolerance: |s| below this is round-off
+  double guard_unit = 1.0;           ///< unit of |s| in guards of contacts
+  double idle = 0.0;                 ///< least s of a contact that supports a free centre
+  double widest = 1.0;               ///< largest contact radius over R0 for which states exist
+  bool is_below_resolution = false;  ///< no contact of the program is deeper than round-off
 };
 
 [[nodiscard]] Scales scales_of(const Settings& settings, std::span<const ContactClass> classes,

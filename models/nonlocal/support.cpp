@@ -9,7 +9,6 @@
 namespace monograin::nonlocal {
 namespace {
 
-constexpr double k_small_force = 1e-3;   // prescribed forces below this, over the largest, are balanced by themselves
 constexpr double k_little = 1e-3;        // of the rest of a step: how far ahead forces are evaluated
 constexpr int k_refinements = 2;         // repeated clearances of one position
 constexpr double k_no_approach = 1e-30;  // over R0; less is round-off of zero
@@ -21,34 +20,19 @@ bool pushes_centre(const Contacts& contacts, std::size_t j) {
 }  // namespace
 
 bool may_balance(const Contacts& contacts, std::span<const Target> targets, std::span<const double> y, double near) {
-  const auto push_of = [&](std::size_t j) -> Eigen::Vector3d {
-    return contacts.weight(j) * targets[j].value * contacts.mean_normal(j);
-  };
-  double largest = 0.0;
-  for (std::size_t j = 0; j < targets.size(); ++j) {
-    if (targets[j].is_force) largest = std::max(largest, push_of(j).norm());
-  }
+  Eigen::Vector3d push = Eigen::Vector3d::Zero();
+  double sum = 0.0;
   std::vector<Eigen::Vector3d> others;
-  std::vector<Eigen::Vector3d> unloading;
   for (std::size_t j = 0; j < targets.size(); ++j) {
     const Eigen::Vector3d& mean_normal = contacts.mean_normal(j);
-    if (targets[j].is_force || y[j] < -near || !pushes_centre(contacts, j)) continue;
-    others.push_back(mean_normal.normalized());
-    if (y[j] > 0.0) unloading.push_back(-others.back());
-  }
-  const auto can_be_borne = [&](bool is_small) {
-    Eigen::Vector3d push = Eigen::Vector3d::Zero();
-    double sum = 0.0;
-    for (std::size_t j = 0; j < targets.size(); ++j) {
-      if (!targets[j].is_force || (push_of(j).norm() < k_small_force * largest) != is_small) continue;
-      push += push_of(j);
+    if (targets[j].is_force) {
+      push += contacts.weight(j) * targets[j].value * mean_normal;
       sum += contacts.weight(j) * targets[j].value;
+    } else if (y[j] >= -near && pushes_centre(contacts, j)) {
+      others.push_back(mean_normal.normalized());
     }
-    return push.norm() <= k_round_off * sum || in_reaction_cone(push, others);
-  };
-  if (!can_be_borne(false)) return false;
-  others.insert(others.end(), unloading.begin(), unloading.end());
-  return can_be_borne(true);
+  }
+  return push.norm() <= k_round_off * sum || in_reaction_cone(push, others);
 }
 
 bool is_held_softly(const Contacts& contacts, std::span<const Ramp> ramps, std::span<const double> y, double s) {

@@ -14,9 +14,7 @@
 
 namespace monograin::nonlocal {
 
-/// True if walls under displacement control with a gap below `near` can balance the prescribed forces. Small forces are
-/// tested by themselves, because round-off of large ones would hide them; a decrease of the force on a loaded contact
-/// may balance them, too.
+/// True if walls under displacement control with a gap below `near` can balance the prescribed forces.
 [[nodiscard]] bool may_balance(const Contacts& contacts, std::span<const Target> targets, std::span<const double> y,
                                double near = k_infinity);
 /// True if, in some free direction, all walls with a gap below s are shallower than s or under force control.

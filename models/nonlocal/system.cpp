@@ -9,7 +9,7 @@ namespace monograin::nonlocal {
 
 System::System(const Settings& settings, std::vector<ContactClass> classes)
     : classes_(std::move(classes)),
-      now_{.particle = Particle(settings, classes_), .guards = GuardSet(classes_)},
+      now_(settings, classes_),
       unknowns_(unknowns_of(classes_, now_.particle.contacts(), now_.particle.scales().depth)),
       observables_(observables_of(classes_, settings.centre)) {}
 
@@ -72,9 +72,21 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> indices, doub
       case k_limit:
         end = GuardSet::end_at(p, guard, xi, y);
         break;
-      default:
-        if (!apply_to_contact(p, guard, fired, xi, y)) continue;
+      case k_made: {
+        // A wall whose touch guard fires now carries no load yet; it may only move a free centre.
+        const auto touches_now = [&](const Guard& other) {
+          return other.kind == k_touched && other.index == guard.index;
+        };
+        if (std::ranges::any_of(fired, touches_now)) continue;
+        p.mode.is_closed[guard.list_index()] = true;
         break;
+      }
+      case k_lost:
+        p.mode.is_closed[guard.list_index()] = false;
+        break;
+      default:
+        p.mode.touches[guard.list_index()] = guard.kind == k_touched;
+        continue;
     }
     log.push_back(event);
   }
@@ -90,15 +102,8 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> indices, doub
   return std::nullopt;
 }
 
-/// Uses the exact state, from which the wall continues: integration errors of opposite walls' forces would not balance.
 double System::controlled(Control control, int contact_class, double xi, std::span<const double> y) {
-  std::vector<double> exact(y.begin(), y.end());
-  try {
-    solve(xi, exact);
-  } catch (const std::domain_error&) {
-    std::ranges::copy(y, exact.begin());  // the next evaluation from here throws again
-  }
-  return quantity(control == Control::force ? Quantity::force : Quantity::displacement, contact_class, xi, exact);
+  return quantity(control == Control::force ? Quantity::force : Quantity::displacement, contact_class, xi, y);
 }
 
 }  // namespace monograin::nonlocal

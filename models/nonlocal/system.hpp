@@ -66,6 +66,9 @@ class System final : public HybridSystem {
  private:
   /// Everything that changes in a run.
   struct State {
+    State(const Settings& settings, std::span<const ContactClass> classes)
+        : particle(settings, classes), guards(particle.contacts()) {}
+
     Particle particle;
     GuardSet guards;
     bool has_begun = false;

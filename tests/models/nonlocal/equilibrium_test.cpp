@@ -265,18 +265,6 @@ TEST(NonlocalBranch, IsFoundFromFarAway) {
   }
 }
 
-TEST(NonlocalBranch, IsNotFollowedToTheRoundOffOfALimitThatLiesFarBeforeTheEnd) {
-  Contacts contacts({k_rubber, Terms::four}, die(), Centre::fixed);
-  std::vector<double> y{0.0, 0.0};
-  try {
-    solve(contacts, compression(2, 0.6), 1.0, y);
-    FAIL() << "the limit is at 0.46";
-  } catch (const DomainError& error) {
-    EXPECT_EQ(error.point().limit, Limit::applicability);
-    EXPECT_GT(error.point().value, 1e-5);
-  }
-}
-
 TEST(NonlocalBranch, HasNoModesBeyondThoseOfClassesOfOneWall) {
   // Close walls push the surface off each other, which may break the symmetry of a class.
   const auto classes = oblique_die(20.0, 4);

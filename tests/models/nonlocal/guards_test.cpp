@@ -14,7 +14,7 @@ namespace {
 /// A particle in a die whose axial walls move; both classes are in contact.
 struct Guarded {
   explicit Guarded(const Ramp& axial, Settings settings = unit_settings())
-      : particle(settings, die()), guards(die()), y(3, 0.0) {
+      : particle(settings, die()), guards(particle.contacts()), y(3, 0.0) {
     particle.set_ramps(std::vector<Ramp>{axial, {0.0, 0.0}}, y);
     particle.mode.is_closed = {1, 1};
     particle.solve(0.0, y);
@@ -77,10 +77,10 @@ TEST(NonlocalGuards, VanishWhereTheMarginIsThatOfStiffening) {
 
 TEST(NonlocalGuards, ListEveryPairOfWallsThatMayMeetOnce) {
   // Lateral walls among each other, and with the axial ones: a right angle in both cases.
-  const std::vector<Pair> pairs = pairs_of(die());
+  const std::vector<Pair> pairs = pairs_of(Contacts({k_rubber}, die(), Centre::fixed));
   ASSERT_EQ(pairs.size(), 2u);
   for (const Pair& pair : pairs) EXPECT_NEAR(pair.angle, 0.5 * std::numbers::pi, 1e-15);
-  EXPECT_TRUE(pairs_of(simple()).empty());  // opposite walls never meet
+  EXPECT_TRUE(pairs_of(Contacts({k_rubber}, simple(), Centre::fixed)).empty());  // opposite walls never meet
 
   Guarded guarded({0.0, 0.45});
   EXPECT_EQ(std::ranges::count(guarded.kinds(), int{k_impingement}), 2);
@@ -100,7 +100,7 @@ TEST(NonlocalGuards, StopAStepThatBeginsAtALimitAndLeadsBeyond) {
   const std::vector<ContactClass> wall{{.name = "wall", .normals = {Eigen::Vector3d::UnitZ()}}};
   const auto at_centre = [&](double target) {
     Particle particle(settings, wall);
-    GuardSet guards(wall);
+    GuardSet guards(particle.contacts());
     std::vector<double> y(2, 0.0);
     particle.set_ramps(std::vector<Ramp>{{1.0, target}}, y);
     particle.mode.is_closed = {1};

@@ -50,14 +50,6 @@ TEST(NonlocalRegimes, ChangeByEventsAtALaterStep) {
   EXPECT_EQ(start.log[1].contact_class, 1);
 }
 
-TEST(NonlocalRegimes, AreLeftToTheGuardOfAnOpenWallAtAFixedCentre) {
-  for (const Centre centre : {Centre::fixed, Centre::free}) {
-    Start start(0.0, {0.0, 0.1}, {0.0, 0.1}, centre);
-    resolve_regimes(start.particle, start.classes, false, start.log);
-    EXPECT_EQ(start.particle.mode.is_closed[0], centre == Centre::free);
-  }
-}
-
 TEST(NonlocalRegimes, MarkTheWallsThatMayMoveAFreeCentre) {
   Start start(0.0, {0.0, 0.1}, {-0.1, -0.1}, Centre::free);
   mark_touching(start.particle);
@@ -70,28 +62,6 @@ TEST(NonlocalRegimes, MarkTheWallsThatMayMoveAFreeCentre) {
   mark_touching(start.particle);
   EXPECT_TRUE(start.particle.mode.touches[0]);
   EXPECT_FALSE(start.particle.mode.touches[1]);
-}
-
-TEST(NonlocalRegimes, ChangeByTheGuardsOfTheirContacts) {
-  Start start(0.0, {0.0, 0.1}, {-0.1, -0.1});
-  Particle& p = start.particle;
-  const Guard lost{.kind = k_lost, .index = 0, .name = {}};
-  const Guard made{.kind = k_made, .index = 0, .name = {}};
-  p.mode.is_closed = {1, 0};
-  EXPECT_TRUE(apply_to_contact(p, lost, {&lost, 1}, 0.0, start.y));
-  EXPECT_FALSE(p.mode.is_closed[0]);
-  EXPECT_TRUE(apply_to_contact(p, made, {&made, 1}, 0.0, start.y));
-  EXPECT_TRUE(p.mode.is_closed[0]);
-  const Guard touched{.kind = k_touched, .index = 1, .name = {}};
-  EXPECT_FALSE(apply_to_contact(p, touched, {&touched, 1}, 0.0, start.y));
-  EXPECT_TRUE(p.mode.touches[1]);
-}
-
-TEST(NonlocalRegimes, StayOpenWhereAWallOnlyComesToRestAtTheSurface) {
-  Start start(0.1, {-0.1, 0.0}, {0.0, 0.0});
-  const Guard made{.kind = k_made, .index = 0, .name = {}};
-  EXPECT_FALSE(apply_to_contact(start.particle, made, {&made, 1}, 1.0, start.y));
-  EXPECT_FALSE(start.particle.mode.is_closed[0]);
 }
 
 TEST(NonlocalRegimes, OfOtherContactsFollowTheExactState) {

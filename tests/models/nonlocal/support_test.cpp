@@ -75,18 +75,6 @@ TEST(NonlocalSupport, BalancesForcesThatPressAgainstAWall) {
   EXPECT_TRUE(may_balance(box.contacts, targets, open, 0.1));
 }
 
-TEST(NonlocalSupport, MayBalanceASmallForceByAnotherContactThatUnloads) {
-  Box box;
-  std::vector<Target> targets(6);
-  targets[0] = {.is_force = true, .value = 0.1};
-  targets[2] = {.is_force = true, .value = 1e-6};
-  std::vector<double> y{0.1, 0.1, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  // Nothing opposes x+, and no contact on its side can unload.
-  EXPECT_FALSE(may_balance(box.contacts, targets, y, 0.01));
-  y[3] = 0.0;
-  EXPECT_TRUE(may_balance(box.contacts, targets, y, 0.01));
-}
-
 TEST(NonlocalSupport, BeginsWithAForceThatATouchingWallOpposes) {
   Box box;
   std::vector<Ramp> ramps(6);
