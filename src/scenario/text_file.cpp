@@ -159,11 +159,11 @@ void expect_own_file(const fs::path& file, const fs::path& witness) {
   if (type == fs::file_type::not_found || type == fs::file_type::symlink) return;  // a link is replaced, not its target
   if (type == fs::file_type::none) fail(file, error.value());
   if (type == fs::file_type::directory) fail(file, EISDIR);
-  const auto [text, problem] = read_text_file(witness, k_longest);
-  if (std::ranges::any_of(k_own, [&](std::string_view words) { return text.starts_with(words); })) return;
-  if (!problem.empty() && witness == file) {
+  const FileText read = read_text_file(witness, k_longest);
+  if (std::ranges::any_of(k_own, [&](std::string_view words) { return read.text.starts_with(words); })) return;
+  if (!read.problem.empty() && witness == file) {
     throw std::runtime_error(
-        fmt::format("{}: would be replaced, but whose it is cannot be seen: {}", file.string(), problem));
+        fmt::format("{}: would be replaced, but whose it is cannot be seen: {}", file.string(), read.problem));
   }
   throw std::runtime_error(
       fmt::format("{}: monograin has not written this file and would replace it; move it away, or choose another place",
