@@ -33,6 +33,7 @@ constexpr const char* k_log = ".log";
 [[nodiscard]] HiddenPath make_workplace(const fs::path& figure) {
   const fs::path parent = fs::absolute(figure).parent_path();
   std::string pattern = (parent / ".figure-XXXXXX").string();
+  const auto held = hold_signals();
   if (mkdtemp(pattern.data()) == nullptr) {
     throw std::runtime_error(
         fmt::format("{} cannot be written: {}", shown_path(figure).string(), std::strerror(errno)));

@@ -294,6 +294,7 @@ void StagedFolder::make_staged() {
   const std::string prefix =
       (is_apart ? target_ / k_staged_infix : target_.parent_path() / prefix_beside(target_)).string();
   if (exists && access(target_.c_str(), W_OK | X_OK) != 0) refuse(target_, "cannot be written", errno);
+  const auto held = hold_signals();
   do {  // repeats if another process removed the folder as a leftover before it was locked
     std::string pattern = prefix + std::string(k_random_length, 'X');
     if (mkdtemp(pattern.data()) == nullptr) refuse(target_, "cannot be written", errno);
@@ -331,12 +332,12 @@ void StagedFolder::publish(double effort) {
   write_list(path());
   flush(path() / k_written_files);
   flush(path());
+  const auto held = hold_signals();
   // An existing target is never renamed over, even if empty: a process that works in it would lose its folder.
   if (fs::exists(target_) || rename(path().c_str(), target_.c_str()) != 0) {
     const LockedFolder one_at_a_time(target_, LOCK_EX);
     replaces_own_ = holds_own_result(target_, marker_);  // of another process, since this one began
     for (const std::string& name : names) check_name(name);
-    const auto held = hold_signals();
     if (exchange(path(), target_)) {
       rescue(path(), target_);
     } else {

@@ -12,6 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int k_attempts = 3;
+
 struct Hidden {
   fs::path path;
   fs::path shown;
@@ -19,7 +21,7 @@ struct Hidden {
 
 /// All hidden paths of the process. Never destroyed, because threads may outlive static objects.
 struct Registry {
-  std::mutex ends;  ///< held while moves must be completed
+  std::recursive_mutex ends;  ///< held while the process must not end
   std::mutex mutex;
   std::vector<Hidden> paths;
 };
@@ -49,8 +51,10 @@ void wait_for_end(const sigset_t& signals) {
   while (sigwait(&signals, &signal) != 0) continue;
   // A thread that fails because its files are gone blocks here when it gives up its own hidden path, and says nothing.
   const std::scoped_lock lock(registry().ends, registry().mutex);
-  std::error_code ignored;
-  for (const Hidden& hidden : registry().paths) fs::remove_all(hidden.path, ignored);
+  for (const Hidden& hidden : registry().paths) {
+    std::error_code failure;  // another program may still write there
+    for (int k = 0; k < k_attempts && (fs::remove_all(hidden.path, failure), failure); ++k) continue;
+  }
   std::signal(signal, SIG_DFL);
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
   std::raise(signal);
@@ -111,7 +115,7 @@ void remove_hidden_paths_at_signals() noexcept {
   }
 }
 
-std::unique_lock<std::mutex> hold_signals() { return std::unique_lock(registry().ends); }
+std::unique_lock<std::recursive_mutex> hold_signals() { return std::unique_lock(registry().ends); }
 
 void restore_signals() noexcept {
   if (waits_for_signals) pthread_sigmask(SIG_SETMASK, &signals_at_start, nullptr);

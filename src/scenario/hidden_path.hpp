@@ -34,8 +34,9 @@ class HiddenPath {
 /// threads start. Without it these signals end the process at once, unless they are ignored.
 void remove_hidden_paths_at_signals() noexcept;
 
-/// Keeps these signals from ending the process as long as the lock is held: for moves that have to be completed.
-[[nodiscard]] std::unique_lock<std::mutex> hold_signals();
+/// Keeps these signals from ending the process as long as the lock is held: for moves that have to be completed, and
+/// while a hidden path is made. A thread may hold it more than once.
+[[nodiscard]] std::unique_lock<std::recursive_mutex> hold_signals();
 
 /// Gives a new process, after fork(), the signals that the program itself began with. Calls only what is safe there.
 void restore_signals() noexcept;

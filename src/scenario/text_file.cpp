@@ -36,6 +36,7 @@ class PartialFile {
   /// @param file  the final name
   explicit PartialFile(const fs::path& file) {
     static std::atomic<unsigned> count{0};
+    const auto held = hold_signals();
     fs::path path;
     do {  // O_EXCL: never opens an existing file or link
       path = file.parent_path() / fmt::format(".{}-{}{}", getpid(), count++, k_partial_extension);
@@ -65,6 +66,7 @@ class PartialFile {
 
   [[nodiscard]] bool move_to(const fs::path& file) {
     if (close(std::exchange(descriptor_, -1)) != 0) return false;
+    const auto held = hold_signals();
     if (rename(path().c_str(), file.c_str()) != 0) return false;
     hidden_.release();
     return true;
