@@ -7,7 +7,7 @@
 
 #include "cel/constants.hpp"
 #include "elastic/hertz.hpp"
-#include "nonlocal/coupling.hpp"
+#include "elastic/sphere_influence.hpp"
 
 namespace monograin::cel {
 namespace {
@@ -144,17 +144,17 @@ std::vector<Coupling> couplings_of(double poisson_ratio, std::span<const Contact
   std::map<double, double> influences;  // by angle, each computed once
   const auto influence_at = [&](double angle) {
     const auto [at, is_new] = influences.try_emplace(std::round(angle / k_same_angle));
-    if (is_new) at->second = nonlocal::sphere_influence(poisson_ratio, angle);
+    if (is_new) at->second = sphere_influence(poisson_ratio, angle);
     return at->second;
   };
-  const double self = nonlocal::sphere_self_influence(poisson_ratio, k_self_half_sine, k_last_term);
+  const double self = sphere_self_influence(poisson_ratio, k_self_half_sine, k_last_term);
   std::vector<Coupling> couplings;
   for (const ContactClass& c : classes) {
     const Eigen::Vector3d& normal = c.normals.front();
     for (const ContactClass& neighbour : classes) {
       Coupling& sum = couplings.emplace_back();
       for (const Eigen::Vector3d& other : neighbour.normals) {
-        const double g = &other == &normal ? self : influence_at(nonlocal::angle_between(normal, other));
+        const double g = &other == &normal ? self : influence_at(angle_between(normal, other));
         const double mu = std::min(1.0, raised<2>(normal.dot(other)));
         sum.same += g * mu * mu;
         sum.mixed += g * mu * (1.0 - mu);

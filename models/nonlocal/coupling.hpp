@@ -5,12 +5,7 @@
 /// upon. Compliances are over 1/(E R); nu in [0, 0.5]. Source, unless said otherwise: Agarwal and Gonzalez (2018).
 #pragma once
 
-#include <Eigen/Core>
-
 namespace monograin::nonlocal {
-
-/// Angle between two directions, to full accuracy also where they are nearly parallel.
-[[nodiscard]] double angle_between(const Eigen::Vector3d& first, const Eigen::Vector3d& second) noexcept;
 
 /// Which displacement a point force causes on the surface: that of a half-space, applied to the sphere (the source's),
 /// or the sphere's own (this workbench's). The sphere's own displacement also moves the loaded contact itself, by the
@@ -22,18 +17,6 @@ enum class Influence { half_space, sphere };
 /// Outward normal displacement per unit force at an angle from it (eq. 18). Negative below 88 (nu = 0) to 71 degrees
 /// (nu = 1/2): a close neighbour pushes the surface away from the wall; -infinity as theta -> 0.
 [[nodiscard]] double half_space_influence(double poisson_ratio, double theta) noexcept;
-
-/// Outward normal displacement of a sphere per unit force at an angle from it, without rigid translation: exact sum
-/// over all Legendre polynomials. Errors below 1e-14 of the value at theta, or of 1. Not from the source.
-[[nodiscard]] double sphere_influence(double poisson_ratio, double theta);
-
-/// Limit of sphere_influence as theta -> 0, without the half-space's displacement (1-nu^2)/(2 pi sin(theta/2)), which
-/// the local law contains, and without the logarithm of sin(theta/2).
-[[nodiscard]] double sphere_self_influence(double poisson_ratio);
-
-/// Self influence of a contact of finite size: with the logarithm, taken at half_sine = sin(theta/2) of the contact's
-/// own radius, and with the modes up to `last` only. Error below 1e-12 for `last` above 1000.
-[[nodiscard]] double sphere_self_influence(double poisson_ratio, double half_sine, int last);
 
 /// How the contact radius follows the deformation of the surface: by the source's closed form (eq. 14), by its integral
 /// (eq. 8), by the same integral with the displacement projected on the true radial direction (eq. A.10 takes the

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "elastic/sphere_influence.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::nonlocal {

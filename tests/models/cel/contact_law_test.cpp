@@ -12,9 +12,9 @@
 
 #include "cel/constants.hpp"
 #include "elastic/hertz.hpp"
+#include "elastic/sphere_influence.hpp"
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
-#include "nonlocal/coupling.hpp"
 
 namespace monograin::cel::contact_law_test {
 namespace {
@@ -128,11 +128,11 @@ TEST(CelInfluenceReference, IsMetBySelfTermAndNeighbours) {
     const auto inputs = ::testing::Message() << "nu = " << nu[row] << ", theta = " << degrees[row];
     if (degrees[row] == 0.0) {
       // The last term is part of the definition of the self term.
-      EXPECT_NEAR(nonlocal::sphere_self_influence(nu[row], 0.2, 4000), g[row], 2e-12) << inputs;
+      EXPECT_NEAR(sphere_self_influence(nu[row], 0.2, 4000), g[row], 2e-12) << inputs;
       ++self_terms;
     } else {
       // The reference leaves out terms beyond the 4000th, which the program sums.
-      EXPECT_NEAR(nonlocal::sphere_influence(nu[row], degrees[row] * pi / 180.0), g[row], 6e-9) << inputs;
+      EXPECT_NEAR(sphere_influence(nu[row], degrees[row] * pi / 180.0), g[row], 6e-9) << inputs;
     }
   }
   EXPECT_EQ(self_terms, 9);
@@ -387,8 +387,8 @@ TEST(CelCoupling, IsSymmetricAndThatOfTheSphereOnAFreshSurface) {
     for (std::size_t j = 0; j < 3; ++j) {
       EXPECT_LE(relative_error(couplings[3 * i + j].G(1.1, 0.9), couplings[3 * j + i].G(1.1, 0.9)), 1e-14);
       if (i == j) continue;
-      const double theta = nonlocal::angle_between(classes[i].normals[0], classes[j].normals[0]);
-      EXPECT_LE(relative_error(couplings[3 * i + j].G(1.0, 1.0), nonlocal::sphere_influence(nu, theta)), 1e-13);
+      const double theta = angle_between(classes[i].normals[0], classes[j].normals[0]);
+      EXPECT_LE(relative_error(couplings[3 * i + j].G(1.0, 1.0), sphere_influence(nu, theta)), 1e-13);
     }
     EXPECT_GT(couplings[4 * i].G(1.0, 1.0), 0.0);
     // Coverage takes from neighbours only, dents add to walls that are parallel only.

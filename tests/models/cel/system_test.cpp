@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "elastic/hertz.hpp"
+#include "elastic/sphere_influence.hpp"
 #include "models/accuracy.hpp"
 #include "models/cel/cases.hpp"
-#include "nonlocal/coupling.hpp"
 #include "scenario/scenario.hpp"
 #include "support/refusal.hpp"
 #include "support/test_run.hpp"
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(CelSystem, IsHertzsUnderSmallLoadsButForTheElasticSphere) {
   const double nu = 0.3;
   // Displacement of a wall by the sphere as a whole, per force on both.
-  const double g = nonlocal::sphere_self_influence(nu, 0.2, 4000) + nonlocal::sphere_influence(nu, std::numbers::pi);
+  const double g = sphere_self_influence(nu, 0.2, 4000) + sphere_influence(nu, std::numbers::pi);
   const double Es = composite_modulus(1.0, nu);
   for (const double d : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4}) {
     const TestRun now = run(with_points(cel_scenario(Configuration::simple, 6.25, nu, {ramp(d)}), 1), "auto");

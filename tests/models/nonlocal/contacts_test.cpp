@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "elastic/hertz.hpp"
+#include "elastic/sphere_influence.hpp"
 #include "models/accuracy.hpp"
 #include "models/nonlocal/cases.hpp"
 

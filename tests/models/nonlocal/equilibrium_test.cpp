@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastic/sphere_influence.hpp"
 #include "models/accuracy.hpp"
 #include "models/nonlocal/cases.hpp"
 
