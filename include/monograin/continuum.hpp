@@ -50,7 +50,7 @@ struct ContinuumResult {
 /// @throws RunInterrupted if the options end the computation
 [[nodiscard]] ContinuumResult continuum(const Scenario& scenario, const ContinuumOptions& options = {});
 
-/// The same for a run of a law that exists.
+/// Computes the particle of a run by finite elements; the law is not run again.
 /// @throws std::invalid_argument also for a run of finite elements
 [[nodiscard]] ContinuumResult continuum(const RunResult& law, const ContinuumOptions& options = {});
 

@@ -137,7 +137,7 @@ struct DataResult {
 /// Reads a file of measured data, as `monograin data` does. Separator, decimal point, headings and units are found in
 /// the file.
 /// @param x  column: heading, or number from 1; empty: the first length, else the first column of numbers
-/// @param y  likewise; empty: the first force, else the next column of numbers
+/// @param y  column; empty: the first force, else the next column of numbers
 /// @throws ScenarioError if the file cannot be read, is no table, or has no such column
 /// @throws std::invalid_argument if x and y are one column, or have the same heading
 [[nodiscard]] DataResult read_data(const std::filesystem::path& file, const std::string& x = {},

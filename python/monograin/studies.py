@@ -333,7 +333,7 @@ def read_data(file: Path, *, x: Union[str, int] = "", y: Union[str, int] = "") -
     Args:
         file: a text file: CSV, or columns between tabs, semicolons or blanks.
         x: heading or number of a column, from 1; empty: the first column of lengths, else the first one of numbers.
-        y: likewise; empty: the first column of forces, else the next one of numbers.
+        y: heading or number of a column; empty: the first column of forces, else the next one of numbers.
 
     Raises:
         ScenarioError: if the file cannot be read, is no table, or has no such column; with the place.

@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds k_interval{100};
 // Moves to the beginning of the line and clears it.
 constexpr const char* k_clear_line = "\r\x1b[K";
 
-/// True if standard error is a terminal that clears a line when it is told to.
+/// True if standard error is a terminal that understands the codes which clear a line.
 bool may_rewrite_lines() {
   const char* const terminal = std::getenv("TERM");
   return isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr && terminal != nullptr &&
