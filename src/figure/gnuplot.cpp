@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -26,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* k_drawing = ".drawing";
 constexpr const char* k_log = ".log";
 
 /// A new hidden folder beside a figure.
@@ -73,15 +71,16 @@ void draw_with_gnuplot(const fs::path& gnuplot, const fs::path& figure, const st
                        const std::string& data) {
   const HiddenPath workplace = make_workplace(figure);
   const fs::path& folder = workplace.path();
-  const fs::path script_name = fs::path(figure.filename()).replace_extension(".gp");
-  const fs::path data_name = fs::path(figure.filename()).replace_extension(".dat");
+  const fs::path drawing_name = figure.filename();
+  const fs::path script_name = fs::path(drawing_name).replace_extension(".gp");
+  const fs::path data_name = fs::path(drawing_name).replace_extension(".dat");
   write_text_file(folder / script_name, script);
   write_text_file(folder / data_name, data);
   // --default-settings: a figure must not depend on somebody's ~/.gnuplot.
   const int code = [&] {
     try {
       return run_program(gnuplot,
-                         {"--default-settings", "-e", fmt::format("output = './{}'", k_drawing),
+                         {"--default-settings", "-e", "output = " + gnuplot_file(drawing_name.string()),
                           (fs::path(".") / script_name).string()},
                          folder, folder / k_log);
     } catch (const std::runtime_error& error) {
@@ -89,7 +88,7 @@ void draw_with_gnuplot(const fs::path& gnuplot, const fs::path& figure, const st
     }
   }();
   std::error_code failure;
-  const auto size = fs::file_size(folder / k_drawing, failure);
+  const auto size = fs::file_size(folder / drawing_name, failure);
   if (code != 0 || failure || size == 0) {
     const std::string said = contents(folder / k_log);
     const std::string end = code < 0 ? fmt::format("a signal ended it ({})", strsignal(-code)) : "it said nothing";
@@ -98,9 +97,8 @@ void draw_with_gnuplot(const fs::path& gnuplot, const fs::path& figure, const st
   }
   // The script first, because it tells whose the other files are.
   const auto held = hold_signals();
-  for (const auto& [made, name] :
-       {std::pair{script_name, script_name}, {data_name, data_name}, {k_drawing, figure.filename()}}) {
-    fs::rename(folder / made, figure.parent_path() / name, failure);
+  for (const fs::path& name : {script_name, data_name, drawing_name}) {
+    fs::rename(folder / name, figure.parent_path() / name, failure);
     if (failure) {
       throw std::runtime_error(fmt::format("{} cannot be written: {}", shown_path(figure).string(), failure.message()));
     }

@@ -332,10 +332,12 @@ void StagedFolder::publish(double effort) {
   write_list(path());
   flush(path() / k_written_files);
   flush(path());
-  const auto held = hold_signals();
+  auto held = hold_signals();
   // An existing target is never renamed over, even if empty: a process that works in it would lose its folder.
   if (fs::exists(target_) || rename(path().c_str(), target_.c_str()) != 0) {
+    held.unlock();  // another process may take its time
     const LockedFolder one_at_a_time(target_, LOCK_EX);
+    held.lock();
     replaces_own_ = holds_own_result(target_, marker_);  // of another process, since this one began
     for (const std::string& name : names) check_name(name);
     if (exchange(path(), target_)) {

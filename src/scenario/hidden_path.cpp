@@ -52,8 +52,11 @@ void wait_for_end(const sigset_t& signals) {
   // A thread that fails because its files are gone blocks here when it gives up its own hidden path, and says nothing.
   const std::scoped_lock lock(registry().ends, registry().mutex);
   for (const Hidden& hidden : registry().paths) {
-    std::error_code failure;  // another program may still write there
-    for (int k = 0; k < k_attempts && (fs::remove_all(hidden.path, failure), failure); ++k) continue;
+    for (int k = 0; k < k_attempts; ++k) {  // another program may still write there
+      std::error_code failure;
+      fs::remove_all(hidden.path, failure);
+      if (!failure) break;
+    }
   }
   std::signal(signal, SIG_DFL);
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "api/ready.hpp"
+#include "support/calculix_stand_in.hpp"
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/text_file.hpp"
@@ -24,16 +25,6 @@ namespace monograin {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A stand-in whose two classes of walls bear the same forces at every instant, on a surface that does not move.
-constexpr const char* k_constant_forces = R"sh([ "$1" = -v ] && echo "This is Version 2.20" && exit
-steps=$(grep -c '^[*]STEP' continuum.inp)
-for i in $(seq "$steps"); do
-  printf ' displacements (vx,vy,vz) for set SURFACE and time\n\n'
-  printf ' total force (fx,fy,fz) for set WALL0 and time\n\n 0. 0. -3.\n'
-  printf ' total force (fx,fy,fz) for set WALL1 and time\n\n -2. 0. 0.\n'
-done > continuum.dat
-)sh";
 
 /// Sets a variable of the environment as long as a test.
 class Variable {

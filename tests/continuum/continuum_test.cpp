@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "support/calculix_stand_in.hpp"
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_run.hpp"
@@ -100,15 +101,6 @@ std::vector<double> computed_displacements(const CheckedScenario& scenario) {
   }
   return displacements;
 }
-
-/// A stand-in whose walls bear forces of 3 and 2 of CalculiX's units at every instant, on a surface that does not move.
-constexpr const char* k_constant_forces = R"sh(steps=$(grep -c '^[*]STEP' continuum.inp)
-for i in $(seq "$steps"); do
-  printf ' displacements (vx,vy,vz) for set SURFACE and time\n\n'
-  printf ' total force (fx,fy,fz) for set WALL0 and time\n\n 0. 0. -3.\n'
-  printf ' total force (fx,fy,fz) for set WALL1 and time\n\n -2. 0. 0.\n'
-done > continuum.dat
-)sh";
 
 TEST(RunContinuum, GivesEveryClassTheForceOfAWholeWallAndAddsUpTheWork) {
   const TemporaryFolder folder;
