@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "numerics/least_squares.hpp"
+#include "numerics/least_squares_problem.hpp"
 
 namespace monograin {
 
