@@ -1,15 +1,6 @@
 # A room is a folder with one purpose, and a library. Rooms use each other from left to right: what a room stands on is
 # named with ROOMS, and nothing else is on its link line.
 
-# One precompiled header for all rooms.
-if(MONOGRAIN_PRECOMPILE_HEADERS)
-  add_library(monograin_headers OBJECT "${PROJECT_SOURCE_DIR}/cmake/empty.cpp")
-  target_compile_features(monograin_headers PUBLIC cxx_std_20)
-  target_link_libraries(monograin_headers PRIVATE monograin_flags Eigen3::Eigen fmt::fmt)
-  target_precompile_headers(monograin_headers PRIVATE <Eigen/Core> <fmt/format.h> <algorithm> <array> <cmath> <filesystem>
-                            <functional> <map> <memory> <optional> <span> <string> <string_view> <variant> <vector>)
-endif()
-
 # monograin_room(name SOURCES file... [ROOMS room...] [LIBRARIES library...])
 function(monograin_room name)
   cmake_parse_arguments(PARSE_ARGV 1 ROOM "" "" "SOURCES;ROOMS;LIBRARIES")
@@ -20,10 +11,6 @@ function(monograin_room name)
   target_link_libraries(monograin_${name} PUBLIC ${ROOM_ROOMS} PRIVATE ${ROOM_LIBRARIES} monograin_flags)
   set_property(TARGET monograin_${name} PROPERTY MONOGRAIN_LIBRARIES ${ROOM_LIBRARIES})
   target_link_libraries(monograin_rooms INTERFACE monograin_${name})
-  if(MONOGRAIN_PRECOMPILE_HEADERS)
-    target_precompile_headers(monograin_${name} REUSE_FROM monograin_headers)
-    target_compile_definitions(monograin_${name} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
-  endif()
   # All objects of the room, with what it stands on: a use of a room on its right is an error of the linker.
   if(MONOGRAIN_BUILD_TESTS AND NOT MONOGRAIN_SANITIZE)
     add_executable(monograin_${name}_links "${PROJECT_SOURCE_DIR}/cmake/empty.cpp" $<TARGET_OBJECTS:monograin_${name}>)
