@@ -2,6 +2,7 @@
 
 #include "mdr/support.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "mdr/guards.hpp"
 #include "models/mdr/particles.hpp"
+#include "support/test_run.hpp"
 
 namespace monograin::mdr::support_test {
 namespace {
@@ -142,6 +144,31 @@ TEST(MdrSupport, NothingIsCarriedInTheMiddleOfAStep) {
   carry_to_support(p, 0.5, y, log);
   EXPECT_TRUE(log.empty());
   EXPECT_EQ(y, initial_state(p));
+}
+
+// All walls touch at first, and the push presses the particle against three of them. A search that kept the others
+// would find contacts that pull, and no balance.
+TEST(MdrSupport, AParticleInANestOfWallsRestsOnThoseThatBearAnElasticOne) {
+  const std::vector<WallSpec> nest{wall("a", {0.9, -0.1, -0.4}),
+                                   wall("b", {-0.1, 0.5, 0.9}),
+                                   wall("c", {-0.9, -0.1, -0.4}),
+                                   wall("d", {0.2, -0.9, -0.4}),
+                                   wall("e", {-0.5, -0.6, -0.6}),
+                                   wall("f", {-0.6, -0.7, 0.3}),
+                                   wall("g", {0.1, -0.9, 0.4}, {force_ramp(1e-5)})};
+  const auto forces_of = [&](CheckedScenario scenario) {
+    scenario = between(std::move(scenario), nest);
+    scenario.loading.centre_is_free = true;
+    const TestRun result = run(scenario);
+    EXPECT_EQ(result.record.status, RunStatus::complete) << result.record.message;
+    std::vector<double> forces;
+    for (const WallSpec& spec : nest) forces.push_back(result.last(spec.name + ".force"));
+    return forces;
+  };
+  const auto mdr = forces_of(mdr_scenario(Configuration::walls, 25.0, 0.3, {}));
+  const auto hertz = forces_of(hertz_scenario(Configuration::walls, {}));
+  EXPECT_EQ(std::ranges::count_if(hertz, [](double force) { return force > 0.0; }), 4) << "three walls and the push";
+  for (std::size_t i = 0; i < nest.size(); ++i) EXPECT_NEAR(mdr[i], hertz[i], 1e-12) << nest[i].name;
 }
 
 }  // namespace
