@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "cel/newton.hpp"
 #include "contacts/side_ahead.hpp"
@@ -32,10 +33,10 @@ constexpr std::array k_kinds{Kind{k_made, "contact-made", 1}, Kind{k_lost, "cont
                              Kind{k_fold, "limit", -1},       Kind{k_coverage, "limit", -1},
                              Kind{k_away, "limit", -1}};
 
-/// Elastic displacement of a contact at the first trial instant ahead at which it is clearly open or closed, or else 0.
-/// Trials begin with the motion at this instant.
-double displacement_ahead(const Particle& p, const Motion& motion, std::size_t i, double xi,
-                          std::span<const double> y) {
+/// Elastic displacement of a contact at the first trial instant ahead at which it is clearly open or closed; 0 if it
+/// stays undecided, none if no state exists ahead. Trials begin with the motion at this instant.
+std::optional<double> displacement_ahead(const Particle& p, const Motion& motion, std::size_t i, double xi,
+                                         std::span<const double> y) {
   Particle ahead = p;
   Newton newton;
   const auto at = [&](double later) {
@@ -44,16 +45,20 @@ double displacement_ahead(const Particle& p, const Motion& motion, std::size_t i
     newton.solve(ahead, later, state);
     return state[i];
   };
-  return contacts::side_ahead(xi, Particle::k_touch * p.depth(), at).value_or(0.0);
+  return contacts::side_ahead(xi, Particle::k_touch * p.depth(), at);
 }
 
 /// True if a contact touches from here on: by its elastic displacement or, if that is within its slack, by the
 /// displacement a little later.
-bool will_touch(const Particle& p, const Motion& motion, std::size_t i, double xi, std::span<const double> y) {
+/// @param is_met  whether the guard of its touch has fired, which decides if no state exists ahead
+bool will_touch(const Particle& p, const Motion& motion, std::size_t i, double xi, std::span<const double> y,
+                bool is_met) {
   const ClassState& c = p.classes[i];
   if (c.is_force_controlled()) return c.contact.F > 0.0 || c.drive.rate() > 0.0;
   const double u = c.contact.u;
-  return (std::abs(u) > p.slack(i) ? u : displacement_ahead(p, motion, i, xi, y)) > 0.0;
+  if (std::abs(u) > p.slack(i)) return u > 0.0;
+  const std::optional<double> ahead = displacement_ahead(p, motion, i, xi, y);
+  return ahead ? *ahead > 0.0 : is_met;
 }
 
 /// Finds the largest set of contacts that can flow together. Takes in all contacts at yield whose yield function would
@@ -159,8 +164,7 @@ void decide_mode(Particle& p, Motion& motion, double xi, std::span<const double>
   };
   const auto note = [&](std::string_view event, std::size_t i) { log.push_back({event, static_cast<int>(i)}); };
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (has_fired(k_made, i) || has_fired(k_lost, i)) continue;
-    const bool touches = will_touch(p, motion, i, xi, y);
+    const bool touches = will_touch(p, motion, i, xi, y, has_fired(k_made, i));
     if (touches != p.classes[i].touches) note(touches ? "contact-made" : "contact-lost", i);
     p.classes[i].touches = touches;
   }

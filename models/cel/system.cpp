@@ -225,10 +225,12 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     if (guard.kind != k_made && guard.kind != k_lost) continue;
     const std::size_t i = guard.list_index();
     ClassState& c = particle_.classes[i];
-    c.touches = guard.kind == k_made && !c.is_released;
+    // decide_mode() decides about the others. A guard that is only within the integrator's tolerance fires as well.
+    if (!c.is_force_controlled() && !c.is_released) continue;
+    c.touches = false;
     if (!guard.is_silent) log.push_back({guard.name, guard.index});
     // A released wall moves with the surface that it has met; a force-controlled wall that would pull is released.
-    if (c.is_force_controlled() || c.is_released) particle_.release_wall(i, y);
+    particle_.release_wall(i, y);
   }
   solve(xi, y);
   decide_mode(particle_, motion_, xi, y, guards, log);

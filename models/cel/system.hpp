@@ -15,6 +15,7 @@
 #include "cel/modes.hpp"
 #include "cel/newton.hpp"
 #include "contacts/columns.hpp"
+#include "system/hybrid_system.hpp"
 #include "system/model_input.hpp"
 
 namespace monograin::cel {

@@ -256,6 +256,20 @@ TEST(CelSystem, DoesNotFeelAWallThatNeverTouches) {
   }
 }
 
+// The load on one side draws the surface away from the wall on the other side, and gives it back when it ends. The
+// surface then only comes back to where it was: at the wall, without pressing on it.
+TEST(CelSystem, LeavesAWallOpenToWhichTheSurfaceOnlyComesBack) {
+  for (const double load : {1e-8, 1e-3, 0.01}) {
+    const CheckedScenario scenario =
+        between(cel_scenario(Configuration::walls, 20.0, 0.3, {}),
+                {wall("a", {0, 0, 1}, path({load, -0.05}), 0.1 * load), wall("b", {0, 0, -1})});
+    for (const char* integrator : {"auto", "cvode-adams", "cvode-bdf", "ida", "odeint-dopri5"}) {
+      const TestRun now = run(scenario, integrator, relative(1e-8));
+      EXPECT_EQ(now.events(), (std::vector<std::string>{"a:contact-made", "a:contact-lost"})) << integrator << load;
+    }
+  }
+}
+
 TEST(CelSystem, SharesTheTravelOfOneWallBetweenTwo) {
   // A punch on a particle that lies on an anvil has the effect of two walls with half its displacement.
   const std::vector<Vector3d> axial{{0, 0, 1}, {0, 0, -1}};
