@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -224,6 +225,7 @@ ForwardSensitivities::ForwardSensitivities(HybridSystem& base, std::vector<Neigh
     for (auto& values : *vectors) values.resize(unknowns.size());
   }
   for (auto& values : values_) values.resize(observables.size());
+  base_values_.resize(observables.size());
   state_.resize(unknowns.size());
   base_rates_.resize(unknowns.size());
   slope_.resize(observables.size());
@@ -487,6 +489,29 @@ void ForwardSensitivities::add_to_row(Number& number, double of_time, double bey
   }
 }
 
+/// Appends the truncation of the derivatives that add_to_row() has added, for d(time)/dp and every observable: next to
+/// an event, an observable may begin or end like a square root. Its difference quotient is then too large by the share
+/// r^2/2, where r is the ratio of its second difference to its first one. A larger second difference is round-off, or
+/// that of a kink.
+void ForwardSensitivities::add_truncation(const Number& number, double xi, std::span<const double> y) {
+  std::ranges::copy(y, state_.begin());
+  // The neighbours' work may come from its closed form, that of the base from the integrator.
+  if (const auto work = number.sides[0].quadrature) {
+    state_[*work] = std::midpoint(number.sides[0].y[*work], number.sides[1].y[*work]);
+  }
+  base_.complete(xi, state_);
+  base_.observe(xi, state_, base_values_);
+  const std::span<const double> derivatives = std::span(row_).last(columns_.size());
+  truncation_.push_back(0.0);
+  for (std::size_t k = 0; k < columns_.size(); ++k) {
+    const std::size_t c = columns_[k];
+    const double first =
+        std::max(0.5 * std::abs(values_[1][c] - values_[0][c]), std::abs(derivatives[k]) * number.step);
+    const double second = std::abs(values_[1][c] - 2.0 * base_values_[c] + values_[0][c]);
+    truncation_.push_back(second < first ? 0.5 * second * second / (first * number.step) : 0.0);
+  }
+}
+
 /// Finds the errors that round-off of the instant makes in the derivatives that a row has: d(time)/dp and those of the
 /// observables. An observable that begins like a square root at an event is known there only to the square root of
 /// round-off.
@@ -566,6 +591,7 @@ std::span<const double> ForwardSensitivities::row_at(double xi, std::span<const 
   // farther away, the curvature is too large.
   constexpr double k_short = 1e-5;
   row_.clear();
+  truncation_.clear();
   const double time = clock.time(xi);
   beside([&] {
     bool has_slopes = false;
@@ -581,9 +607,10 @@ std::span<const double> ForwardSensitivities::row_at(double xi, std::span<const 
       has_slopes = has_slopes || !is_near;
       place(number, xi, y, is_near ? beyond : 0.0);
       add_to_row(number, 0.0, is_near ? 0.0 : beyond);
+      add_truncation(number, xi, y);
     }
   });
-  row_.resize(2 * row_.size(), 0.0);
+  row_.insert(row_.end(), truncation_.begin(), truncation_.end());
   is_placed_ = false;
   return row_;
 }

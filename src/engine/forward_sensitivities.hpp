@@ -123,7 +123,8 @@ class ForwardSensitivities {
   void end_leg(std::span<const double> y, bool is_solved);
 
   // --- rows: for each number d(time)/dp and the derivative of every observable that has no words; after them, in the
-  // same order, the error that round-off of the instant makes in each derivative: 0 between events
+  // same order, the error of each: at an event that of the instant's round-off, between events the truncation of its
+  // difference quotient
 
   /// Row at the present corner or event, which moves with the numbers.
   [[nodiscard]] std::span<const double> row_here();
@@ -156,6 +157,7 @@ class ForwardSensitivities {
   void find_round_off(Number& number, std::span<double> round_off);
   void add_round_off_to_row(Number& number);
   void add_to_row(Number& number, double of_time, double beyond_slopes = 0.0);
+  void add_truncation(const Number& number, double xi, std::span<const double> y);
 
   HybridSystem& base_;
   std::size_t size_ = 0;  ///< number of integrated unknowns
@@ -168,7 +170,7 @@ class ForwardSensitivities {
   std::array<std::vector<double>, 2> rates_;  ///< rates or residuals of the two neighbours
   std::array<std::vector<double>, 2> values_;
   std::array<std::vector<double>, 2> states_;
-  std::vector<double> state_, base_rates_, slope_, guards_, row_;
+  std::vector<double> state_, base_rates_, base_values_, slope_, guards_, row_, truncation_;
 };
 
 }  // namespace monograin

@@ -33,7 +33,7 @@ constexpr double k_finest_atol = 1e-14;  // upper bound of atol of runs for diff
 constexpr double k_share = 1e-5;
 // Error bound of an integrated derivative, over the run's rtol and the largest derivative of the column.
 constexpr double k_forward_error = 90.0;
-constexpr double k_counts = 1e-6;  // round-off of a derivative that counts, over the largest one of its column
+constexpr double k_counts = 1e-6;  // error of a derivative that counts, over the largest one of its column
 
 [[nodiscard]] std::string quotient_unit(const std::string& unit, const std::string& by) {
   if (by == "-") return unit.empty() ? "-" : unit;
@@ -62,10 +62,10 @@ constexpr double k_counts = 1e-6;  // round-off of a derivative that counts, ove
   return columns;
 }
 
-/// Removes the last columns of a table, which hold the round-off of the derivatives in the columns before them. A
-/// derivative becomes NaN if its round-off exceeds 1e-6 of the largest derivative in its column.
+/// Removes the last columns of a table, which hold the errors of the derivatives in the columns before them. A
+/// derivative becomes NaN if its error exceeds 1e-6 of the largest derivative in its column.
 /// @param largest  one for each column of derivatives
-[[nodiscard]] Table without_round_off(const Table& wide, const std::vector<double>& largest) {
+[[nodiscard]] Table without_errors(const Table& wide, const std::vector<double>& largest) {
   const std::size_t count = largest.size();
   const std::size_t width = wide.columns().size() - count;
   Table table({wide.columns().begin(), wide.columns().end() - static_cast<std::ptrdiff_t>(count)});
@@ -80,8 +80,8 @@ constexpr double k_counts = 1e-6;  // round-off of a derivative that counts, ove
   return table;
 }
 
-/// Largest absolute derivative, for each of the `count` columns before the `count` columns of round-off. A derivative
-/// at an event counts if round-off of the instant does not.
+/// Largest absolute derivative, for each of the `count` columns before the `count` columns of errors. A derivative
+/// counts if its error does not.
 [[nodiscard]] std::vector<double> largest_derivatives(const Table& wide, std::size_t count) {
   std::vector<double> largest;
   const std::size_t first = wide.columns().size() - 2 * count;
@@ -92,6 +92,21 @@ constexpr double k_counts = 1e-6;  // round-off of a derivative that counts, ove
     }));
   }
   return largest;
+}
+
+/// Errors that without_errors() leaves in the derivatives, each over the largest derivative of its column: the largest
+/// one for each of the keys, which have equally many columns.
+[[nodiscard]] std::vector<double> errors_left(const Table& wide, const std::vector<double>& largest, std::size_t keys) {
+  const std::size_t first = wide.columns().size() - largest.size();
+  std::vector<double> left(keys, 0.0);
+  for (std::size_t row = 0; row < wide.row_count(); ++row) {
+    for (std::size_t k = 0; k < largest.size(); ++k) {
+      const double error = wide.at(row, first + k);
+      double& of_key = left[k * keys / largest.size()];
+      if (error <= k_counts * largest[k] && error > 0.0) of_key = std::max(of_key, error / largest[k]);
+    }
+  }
+  return left;
 }
 
 /// Relative round-off of the derivatives with respect to a key: the worst column counts, each over its largest
@@ -298,18 +313,21 @@ std::optional<std::string> record_with_sensitivities(Run& run, Scene& scene, con
   try {
     ForwardSensitivities carried(*scene.system, neighbours_of(scenario));
     std::vector<Column> columns = forward_columns(scenario, *scene.system);
-    const std::vector<Column> of_round_off = columns;
-    columns.insert(columns.end(), of_round_off.begin(), of_round_off.end());
+    const std::vector<Column> of_errors = columns;
+    columns.insert(columns.end(), of_errors.begin(), of_errors.end());
     RunRecord record = record_run(scene, run.integrator.used, {scenario.numerics.rtol, scenario.numerics.atol},
                                   scenario.output, carried, columns);
     if (record.status == RunStatus::complete) {
       const std::vector<double> largest = largest_derivatives(record.history, columns.size() / 2);
-      record.history = without_round_off(record.history, largest);
-      record.events = without_round_off(record.events, largest);
+      const std::vector<double> left = errors_left(record.history, largest, scenario.sensitivities.size());
+      record.history = without_errors(record.history, largest);
+      record.events = without_errors(record.events, largest);
       run.record = std::move(record);
-      for (const SensitivityKey& key : scenario.sensitivities) {
+      for (std::size_t k = 0; k < left.size(); ++k) {
+        const SensitivityKey& key = scenario.sensitivities[k];
         const double step = step_of(key);
-        const double error = k_forward_error * scenario.numerics.rtol + round_off_of(run.record.history, key, step);
+        const double error =
+            k_forward_error * scenario.numerics.rtol + round_off_of(run.record.history, key, step) + left[k];
         run.sensitivities.push_back({key.key, key.value, step, error, true, "integrated with the run"});
       }
       return std::nullopt;
