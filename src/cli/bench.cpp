@@ -102,6 +102,10 @@ int bench(const BenchOptions& named) {
   const bool needs_list = options.scenes.empty() || std::ranges::any_of(options.scenes, [](const std::string& name) {
                             return fs::path(name).extension() != ".toml";
                           });
+  if (needs_list && !fs::exists(options.list)) {
+    throw std::runtime_error(fmt::format(
+        "{}: no such file; run this in the project's folder, or name the list with --scenes", options.list));
+  }
   const BenchList list = needs_list ? read_bench_list(options.list) : BenchList{};
   const std::vector<CheckedScenario> scenarios = chosen_scenes(options, list.scenes);
   prepare_folder(options.output);

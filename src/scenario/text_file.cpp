@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
@@ -103,7 +104,11 @@ FileText read_stream(std::istream& stream, std::size_t largest) {
 }  // namespace
 
 FileText read_text_file(const fs::path& file, std::size_t largest, FileKind kind) {
-  if (kind == FileKind::any && file == k_standard_input) return read_stream(std::cin, largest);
+  if (kind == FileKind::any && file == k_standard_input) {
+    FileText read = read_stream(std::cin, largest);
+    // The stream takes an error of the standard input, such as that of a folder, for its end.
+    return std::ferror(stdin) == 0 ? read : FileText{{}, "it cannot be read"};
+  }
   std::error_code error;
   const auto status = fs::status(file, error);
   if (status.type() == fs::file_type::none) return {{}, error.message()};
@@ -172,16 +177,16 @@ void expect_own_file(const fs::path& file, const fs::path& witness) {
                   file.string()));
 }
 
-std::vector<fs::path> scenario_files(const fs::path& folder) {
+std::vector<fs::path> toml_files(const fs::path& folder, std::string_view content, std::string_view option) {
   if (!fs::is_directory(folder)) {
-    throw std::runtime_error(
-        fmt::format("{}: no such folder; run this in the project's folder, or name it", folder.string()));
+    throw std::runtime_error(fmt::format("{}: no such folder; run this in the project's folder, or name it with {}",
+                                         folder.string(), option));
   }
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
-  if (files.empty()) throw std::runtime_error(fmt::format("{}: holds no scenario (.toml) to run", folder.string()));
+  if (files.empty()) throw std::runtime_error(fmt::format("{}: holds no {} (.toml)", folder.string(), content));
   std::ranges::sort(files);
   return files;
 }

@@ -69,9 +69,12 @@ void remove_partial_files(const std::filesystem::path& folder);
 /// @throws std::runtime_error if the file exists, and the witness is not the program's or does not exist
 void expect_own_file(const std::filesystem::path& file, const std::filesystem::path& witness);
 
-/// Scenario files (.toml) of a folder, in the order of their names.
-/// @throws std::runtime_error if there is no such folder, or no scenario file in it
-[[nodiscard]] std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder);
+/// Files .toml of a folder, in the order of their names.
+/// @param content  what such a file describes, for messages, such as "scenario"
+/// @param option  of the command line that names the folder
+/// @throws std::runtime_error if there is no such folder, or no such file in it
+[[nodiscard]] std::vector<std::filesystem::path> toml_files(const std::filesystem::path& folder,
+                                                            std::string_view content, std::string_view option);
 
 /// Waits until a file, or the list of names in a folder, is on the disk.
 /// @throws std::runtime_error naming the file and why it cannot be written

@@ -62,5 +62,20 @@ TEST_F(DataFolder, OfTheProgramIsNotWrittenTo) {
   EXPECT_FALSE(fs::exists(path("other/plots/yours.svg")));
 }
 
+// A program that was copied alone has no data. Every command that needs them names the option that says where they are.
+TEST_F(DataFolder, IsAskedForByACopyOfTheProgramAlone) {
+  fs::copy_file(MONOGRAIN_PROGRAM, path("copy"));
+  const auto expect_message = [&](const std::string& command, const std::string& message) {
+    const Outcome outcome = shell("./copy " + command);
+    EXPECT_EQ(outcome.code, 2) << command;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+  };
+  const std::string remedy = "run this in the project's folder, or name ";
+  expect_message("atlas", "plots: no such folder; " + remedy + "it with --plots");
+  expect_message("bench", "scenarios/bench/scenes.toml: no such file; " + remedy + "the list with --scenes");
+  expect_message("bench --against-fe", "plots: no such folder; " + remedy + "it with --plots");
+  expect_message("regress", "scenarios: no such folder; " + remedy + "it with --scenarios");
+}
+
 }  // namespace
 }  // namespace monograin::data_folder_command_test

@@ -140,7 +140,14 @@ TEST_F(Terminal, AHyphenIsStandardInputWhereAFileIsExpected) {
              "\"material.poisson_ratio\" = { from = 0.2, to = 0.4, points = 3 }\n");
   EXPECT_EQ(shell("$M sweep - -o swept < sweep.toml").code, 0);
   EXPECT_TRUE(fs::exists(path("swept/results.csv")));
-  EXPECT_EQ(shell("$M run - <&-").code, 2);
+}
+
+TEST_F(Terminal, AStandardInputThatCannotBeReadIsNotAnEmptyScenario) {
+  for (const char* input : {"<&-", "< ."}) {
+    const Outcome outcome = shell(std::string("$M run - ") + input);
+    EXPECT_EQ(outcome.code, 2) << input;
+    EXPECT_TRUE(outcome.err.starts_with("stdin:1:1: it cannot be read")) << input << ": " << outcome.err;
+  }
 }
 
 // --- sizes

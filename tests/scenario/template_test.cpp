@@ -48,7 +48,7 @@ ScenarioSource source_of(const std::filesystem::path& file) {
 }
 
 TEST(ScenarioTemplate, SetsNumbersOfTheMaterialAsItsTextWould) {
-  for (const std::filesystem::path& file : scenario_files(k_ready)) {
+  for (const std::filesystem::path& file : toml_files(k_ready, "scenario", "")) {
     SCOPED_TRACE(file);
     const ScenarioSource source = source_of(file);
     const ScenarioTemplate prepared(source);

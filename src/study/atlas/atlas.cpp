@@ -17,6 +17,7 @@
 #include "catalogue.hpp"
 #include "history/profile.hpp"
 #include "history/run.hpp"
+#include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 #include "study/atlas/adhesion_panels.hpp"
 #include "study/atlas/definition.hpp"
@@ -30,22 +31,8 @@ using Values = std::vector<double>;
 
 constexpr std::size_t k_parameter_values = 201;
 
-[[nodiscard]] std::vector<fs::path> definition_files(const fs::path& folder) {
-  if (!fs::is_directory(folder)) {
-    throw std::runtime_error(
-        fmt::format("{}: no such folder; run this in the project's folder, or name it with --plots", folder.string()));
-  }
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  }
-  if (files.empty()) throw std::runtime_error(fmt::format("{}: holds no definition (.toml)", folder.string()));
-  std::ranges::sort(files);
-  return files;
-}
-
 [[nodiscard]] std::vector<fs::path> chosen_files(const fs::path& folder, const std::vector<std::string>& names) {
-  const std::vector<fs::path> files = definition_files(folder);
+  const std::vector<fs::path> files = toml_files(folder, "definition", "--plots");
   if (names.empty()) return files;
   std::vector<std::string> known;
   for (const fs::path& file : files) known.push_back(file.stem().string());
@@ -435,7 +422,7 @@ void collect(const ScenarioError& error, FaultList& faults) {
 
 std::vector<AtlasEntry> list_atlas(const fs::path& definitions) {
   std::vector<AtlasEntry> entries;
-  for (const Definition& definition : read_definitions(definition_files(definitions))) {
+  for (const Definition& definition : read_definitions(toml_files(definitions, "definition", "--plots"))) {
     entries.push_back({definition.name, definition.title});
   }
   return entries;

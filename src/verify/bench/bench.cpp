@@ -359,7 +359,7 @@ struct ScenariosOfList {
     if (is_folder && !section.text("name").empty())
       faults.add(section.key_place("name"), "a folder of scenarios has no name of its own; remove it");
     std::vector<CheckedScenario> scenes;
-    for (const fs::path& file : is_folder ? scenario_files(named) : std::vector{named}) {
+    for (const fs::path& file : is_folder ? toml_files(named, "scenario", "--scenes") : std::vector{named}) {
       auto scene = read(file, section);
       if (!scene) continue;
       if (!section.text("name").empty()) scene->name = section.text("name");

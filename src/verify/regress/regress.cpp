@@ -140,7 +140,7 @@ std::vector<RegressionResult> orphaned_curves(const std::vector<fs::path>& scena
 }  // namespace
 
 std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path& curves) {
-  const std::vector<fs::path> files = scenario_files(scenarios);
+  const std::vector<fs::path> files = toml_files(scenarios, "scenario", "--scenarios");
   std::vector<RegressionResult> results = orphaned_curves(files, curves);
   for (const fs::path& file : files) {
     const CheckedScenario scenario = read_scenario(file);
@@ -154,7 +154,7 @@ std::vector<RegressionResult> regress(const fs::path& scenarios, const fs::path&
 }
 
 std::vector<RegressionResult> accept_curves(const fs::path& scenarios, const fs::path& curves) {
-  const std::vector<fs::path> files = scenario_files(scenarios);
+  const std::vector<fs::path> files = toml_files(scenarios, "scenario", "--scenarios");
   std::vector<RegressionResult> results = orphaned_curves(files, curves);
   std::vector<Run> runs;  // all are computed before the first one replaces a curve
   for (const fs::path& file : files) {

@@ -129,7 +129,7 @@ TEST(BenchScenes, EachRunsToItsEnd) {
     const monograin::Run run = run_scenario(scenario);
     EXPECT_EQ(run.record.status, RunStatus::complete) << scenario.name << ": " << run.record.message;
   }
-  for (const fs::path& ready : scenario_files(k_scenes.parent_path().parent_path())) {
+  for (const fs::path& ready : toml_files(k_scenes.parent_path().parent_path(), "scenario", "")) {
     EXPECT_TRUE(names.contains(ready.stem().string())) << ready << " is not measured";
   }
 }
