@@ -54,7 +54,6 @@ class Direct final : public EventLocator {
   }
 
   void begin(double xi, std::span<const double> y) override {
-    constexpr double k_few_nodes_accuracy = 1e-5;  // tolerance of the work for which few nodes are enough
     segment_begin_ = xi;
     refusals_ = 0;
     round_off_ = {};
@@ -65,7 +64,7 @@ class Direct final : public EventLocator {
       has_panels_ = has_many_rows_ && system_.is_quadrature_costly();
       primitive_offset_ = y[*quadrature_] - *primitive;
     }
-    nodes_ = is_closed_ || work_accuracy_ >= k_few_nodes_accuracy ? &LegendreNodes::few() : &LegendreNodes::many();
+    nodes_ = is_closed_ ? &LegendreNodes::few() : &LegendreNodes::many();
     length_ = longest();
     begin_segment(xi, y);
   }
@@ -202,8 +201,7 @@ class Direct final : public EventLocator {
     // of the second order, and each further one squares the share.
     constexpr double k_found = 1e-3;
     constexpr int k_most_corrections = 4;
-    // With few nodes, the tolerance of the work is above the errors that kinks cause.
-    if (is_closed_ || nodes_ == &LegendreNodes::few()) return false;
+    if (is_closed_) return false;
     const double limit = std::min(1.0, begin_ + (1.0 + mergeable) * piece_length());
     double kink = system_.next_kink(begin_ + k_passed * piece_length(), begin_, begin_state_);
     if (kink - begin_ < k_close * piece_length() || kink >= limit) return false;
