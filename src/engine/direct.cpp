@@ -25,8 +25,9 @@ constexpr double k_most_shrinkage = 0.2;
 constexpr double k_safety = 0.85;
 // Growth of the planned length of pieces that end at kinks.
 constexpr double k_growth_at_kinks = 1.1;
-// Least tolerance of a piece's series, over the work.
-constexpr double k_round_off_of_work = 1e-16;
+// Tolerance of a piece's series of the work, over rtol. Next to a singularity of the work, as at a first touch, the
+// error is up to a hundred times that.
+constexpr double k_share_of_work = 1e-3;
 // A leg of at least so many rows takes their work from series, if its closed form is costly.
 constexpr std::size_t k_many_rows = 50;
 
@@ -35,7 +36,7 @@ class Direct final : public EventLocator {
   Direct(Equations& system, double rtol, GuardSet& guard_set, std::size_t rows)
       : EventLocator(system, guard_set, k_most_nodes),
         has_many_rows_(rows >= k_many_rows),
-        work_accuracy_(work_accuracy_of(rtol)) {
+        work_accuracy_(k_share_of_work * rtol) {
     const auto unknowns = system.unknowns();
     const auto found = std::ranges::find(unknowns, Unknown::Kind::quadrature, &Unknown::kind);
     if (found != unknowns.end() && system.has_energies())
@@ -137,14 +138,6 @@ class Direct final : public EventLocator {
       return 0.5 * length() * rate.integral(at);
     }
   };
-
-  /// Tolerance of a piece's series, over the work: rtol times k_share, or the square of an rtol above k_share, but no
-  /// less than round-off. Next to a singularity of the work, as at a first touch, the error is up to a hundred times
-  /// that.
-  [[nodiscard]] static double work_accuracy_of(double rtol) noexcept {
-    constexpr double k_share = 1e-3;
-    return std::max(k_round_off_of_work, rtol * std::max(rtol, k_share));
-  }
 
   /// Position of xi in the piece, from -1 at its beginning to 1 at its end.
   [[nodiscard]] double position(double xi) const noexcept {
@@ -288,13 +281,13 @@ class Direct final : public EventLocator {
   /// @param accuracy  tolerated error, over the work
   /// @param round_off  known round-off of the rates
   [[nodiscard]] double length_ratio(double work, double length, double accuracy, double round_off = 0.0) const {
-    // Last terms of a series of rates up to this many times the round-off of the work count as round-off: the rates are
+    // Last terms of a series of rates, times the length, up to this share of the work count as round-off: the rates are
     // then next to nothing beside the work.
-    constexpr double k_noise_of_nothing = 1e4;
+    constexpr double k_nothing = 1e-12;
     const double scale = std::max(std::abs(work), system_.unknowns()[*quadrature_].scale);
     // The tolerance itself must not count as round-off: terms next to a kink fall slowly, and the sum of those left out
     // exceeds the last ones kept.
-    const double least = k_noise_of_nothing * k_round_off_of_work * scale / length;
+    const double least = k_nothing * scale / length;
     return work_rate_.reach(2.0 * accuracy * scale / length, std::max(round_off, least));
   }
 
@@ -480,7 +473,7 @@ class Direct final : public EventLocator {
   }
 
   bool has_many_rows_;
-  double work_accuracy_;
+  double work_accuracy_;  ///< tolerance of a piece's series of the work, over the work
   std::optional<std::size_t> quadrature_;
   bool is_closed_ = false;
   double primitive_offset_ = 0.0;
