@@ -190,25 +190,17 @@ class Direct final : public EventLocator {
     // The last piece ended at kinks that are nearer than this share of the piece to its beginning.
     constexpr double k_passed = 1e-3;
     constexpr double k_close = 0.25;  // share of the piece up to which kinks lie close together
-    // The error of a kink's place after a correction by this share of the piece has no effect: the first correction is
-    // of the second order, and each further one squares the share.
-    constexpr double k_found = 1e-3;
-    constexpr int k_most_corrections = 4;
     if (is_closed_) return false;
     const double limit = std::min(1.0, begin_ + (1.0 + mergeable) * piece_length());
-    double kink = system_.next_kink(begin_ + k_passed * piece_length(), begin_, begin_state_);
+    const double kink = system_.next_kink(begin_ + k_passed * piece_length(), begin_, begin_state_);
     if (kink - begin_ < k_close * piece_length() || kink >= limit) return false;
-    double correction = 1.0;
-    for (int count = 0; correction > k_found && count < k_most_corrections && kink < limit; ++count) {
-      piece_end_ = kink;
-      for (std::size_t k = 0; k < trial_.size(); ++k)
-        trial_[k] = begin_state_[k] + (k < integrated_ ? begin_rates_[k] * piece_length() : 0.0);
-      ++statistics_.rhs_evaluations;
-      system_.solve(kink, trial_);
-      kink = system_.next_kink(std::midpoint(begin_, kink), kink, trial_);
-      correction = std::abs(kink - piece_end_) / piece_length();
-    }
-    piece_end_ = std::min(kink, limit);
+    // The system has predicted the kink from the rates at the beginning. It corrects the prediction by those there.
+    piece_end_ = kink;
+    for (std::size_t k = 0; k < trial_.size(); ++k)
+      trial_[k] = begin_state_[k] + (k < integrated_ ? begin_rates_[k] * piece_length() : 0.0);
+    ++statistics_.rhs_evaluations;
+    system_.solve(kink, trial_);
+    piece_end_ = std::min(system_.next_kink(std::midpoint(begin_, kink), kink, trial_), limit);
     return true;
   }
 
