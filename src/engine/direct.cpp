@@ -403,12 +403,11 @@ class Direct final : public EventLocator {
   /// True if the series of the work holds up to the event that ended the piece. Nodes lie beyond the event, where the
   /// mode need not continue smoothly (a contact that opens has no force).
   [[nodiscard]] bool holds_up_to_end() {
-    constexpr double k_event_accuracy = 1e-13;  // error of the work up to the event, over the work
     system_.rates(end_, end_state_, rates_);
     const double scale = std::max(std::abs(begin_state_[*quadrature_]), system_.unknowns()[*quadrature_].scale);
     const auto is_same = [&](double xi, std::span<const double> rates) {
       const double error = std::abs(work_rate_.value(position(xi)) - rates[*quadrature_]);
-      return (end_ - begin_) * error <= std::max(k_event_accuracy, work_accuracy_) * scale;
+      return (end_ - begin_) * error <= work_accuracy_ * scale;
     };
     return is_same(begin_, begin_rates_) && is_same(end_, rates_);
   }
