@@ -17,8 +17,6 @@ namespace {
 
 // A remainder of the leg up to this share of a piece is merged into the piece.
 constexpr double k_mergeable = 0.25;
-// Pieces up to this length (step coordinates) may be round-off.
-constexpr double k_tiny = 1e-10;
 // Largest and smallest ratio of a piece's length to the length before, and the safety factor on the predicted length.
 constexpr double k_most_growth = 2.0;
 constexpr double k_most_shrinkage = 0.2;
@@ -56,7 +54,6 @@ class Direct final : public EventLocator {
 
   void begin(double xi, std::span<const double> y) override {
     segment_begin_ = xi;
-    refusals_ = 0;
     round_off_ = {};
     is_closed_ = !quadrature_;
     has_panels_ = false;
@@ -71,7 +68,6 @@ class Direct final : public EventLocator {
   }
 
   Advance advance() override {
-    constexpr int k_most_refusals = 200;  // more tiny pieces of a segment are round-off without progress
     ++statistics_.steps;
     begin_piece();
     system_.branch_reach(begin_state_, branch_reach_);
@@ -89,8 +85,7 @@ class Direct final : public EventLocator {
         attempt = cover_piece();
       } catch (const std::domain_error&) {
         // The equations end within the piece, or Newton's method left their domain although there is a solution.
-        const bool is_tiny = tried_length < k_tiny;
-        if (tried_length < least_progress(begin_) || (is_tiny && ++refusals_ > k_most_refusals)) throw;
+        if (tried_length < least_progress(begin_)) throw;
         attempt = too_long(0.5);
       }
       length_ = attempt.factor * tried_length;
@@ -288,6 +283,7 @@ class Direct final : public EventLocator {
   /// avoid this.
   [[nodiscard]] bool has_jumped() const noexcept {
     constexpr double k_jumped = 1e-8;  // change of an unknown within round-off of xi, over its scale, that is a jump
+    constexpr double k_tiny = 1e-10;   // pieces up to this length (step coordinates) may be round-off
     if (fired_.empty() || end_ - begin_ > least_progress(begin_) || piece_length() <= k_tiny) return false;
     for (std::size_t k = 0; k < end_state_.size(); ++k) {
       if (std::abs(end_state_[k] - begin_state_[k]) > k_jumped * system_.unknowns()[k].scale) return true;
@@ -473,7 +469,6 @@ class Direct final : public EventLocator {
   bool has_dependent_unknowns_ = false;
   bool may_be_undetermined_ = false;  ///< some unknown may be determined by no equation
   double segment_begin_ = 0.0;
-  int refusals_ = 0;                      ///< tiny pieces of this segment in which the equations ended
   double length_ = 0.0;                   ///< length of the next piece
   double piece_end_ = 0.0;                ///< where the piece would end without an event
   LegendreSeries work_rate_;              ///< rate of the quadrature
