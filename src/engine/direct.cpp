@@ -135,13 +135,11 @@ class Direct final : public EventLocator {
   };
 
   /// Position of xi in the piece, from -1 at its beginning to 1 at its end.
-  [[nodiscard]] double position(double xi) const noexcept {
-    return piece_end_ > begin_ ? std::clamp(2.0 * (xi - begin_) / piece_length() - 1.0, -1.0, 1.0) : -1.0;
-  }
+  [[nodiscard]] double position(double xi) const noexcept { return 2.0 * (xi - begin_) / piece_length() - 1.0; }
 
   /// Solves for the state at xi, starting from the series through the nodes of the piece. Unknowns that no equation may
   /// determine depend on the path so far, which no series represents: the solver then starts from the last node before
-  /// xi, and from the series only if that fails. Dependent unknowns are too steep to start from a node.
+  /// xi. Dependent unknowns are too steep to start from a node.
   void state_at(double xi, std::span<double> y) override {
     ++statistics_.rhs_evaluations;
     const double t = position(xi);
@@ -149,14 +147,9 @@ class Direct final : public EventLocator {
       std::size_t passed = 0;
       while (passed < nodes_->count && nodes_->places[passed] <= t) ++passed;
       for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + (passed > 0 ? changes_[k][passed - 1] : 0.0);
-      try {
-        system_.solve(xi, y);
-        return;
-      } catch (const std::domain_error&) {
-        ++statistics_.rhs_evaluations;
-      }
+    } else {
+      for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + series_[k].value(t);
     }
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] = begin_state_[k] + series_[k].value(t);
     system_.solve(xi, y);
   }
 
