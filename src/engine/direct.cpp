@@ -205,7 +205,6 @@ class Direct final : public EventLocator {
     move_end(piece_end_);
     locate_event();
     if (has_jumped()) return too_long(k_most_shrinkage);
-    if (starts_from_nodes() && end_ < piece_end_ && end_ - begin_ > least_progress(begin_)) forget_what_follows();
     if (has_branches_) {
       if (!is_resolved()) return too_long(std::min(0.5, factor_just_beyond_event()));
       attempt.factor = std::min(attempt.factor, std::max(k_safety / share_of_reach(end_state_), k_most_shrinkage));
@@ -319,15 +318,6 @@ class Direct final : public EventLocator {
       if (series_[k].rest(k_round_off_of_branch * system_.unknowns()[k].scale) > k_unresolved) return false;
     }
     return true;
-  }
-
-  /// Solves the nodes again, up to the event. Nodes beyond it were solved in a mode that ends there, and unknowns that
-  /// no equation determines carry that history back.
-  void forget_what_follows() {
-    piece_end_ = end_;
-    for (std::size_t j = 0; j < nodes_->count; ++j) solve_at_node(j);
-    fit_changes();
-    move_end(end_);
   }
 
   [[nodiscard]] double node(std::size_t j) const noexcept {
