@@ -198,7 +198,7 @@ class Direct final : public EventLocator {
     constexpr double k_inside = 0.99;
     forget_samples();
     if (begin_ == segment_begin_) sample_early();
-    if (const auto factor = solve_nodes()) return too_long(*factor);
+    if (!solve_nodes()) return too_long(0.5);
     fit_changes();
     Attempt attempt = is_closed_ ? Attempt{} : judge_series();
     if (!attempt.is_covered) return attempt;
@@ -216,23 +216,18 @@ class Direct final : public EventLocator {
   }
 
   /// Solves for the states at the nodes, and evaluates the rates there if the work needs them.
-  /// @return factor of the piece's length if a state is so far from the beginning that it may lie on another branch of
-  ///   solutions; none if all nodes are solved
-  std::optional<double> solve_nodes() {
+  /// @return false if a state is so far from the beginning that it may lie on another branch of solutions
+  bool solve_nodes() {
     for (std::size_t j = 0; j < nodes_->count; ++j) {
       const double xi = node(j);
       solve_at_node(j);
       if (piece_length() > k_shortest_sampled && !guard_set_.is_monotone()) sample_inside(xi, trial_);
-      if (has_branches_ && piece_length() > least_progress(begin_)) {
-        if (const double share = share_of_reach(trial_); share > 1.0) {
-          return std::clamp(k_safety / share, k_most_shrinkage, 0.5);
-        }
-      }
+      if (has_branches_ && piece_length() > least_progress(begin_) && share_of_reach(trial_) > 1.0) return false;
       if (is_closed_) continue;
       system_.rates(xi, trial_, rates_);
       for (std::size_t k = 0; k < integrated_; ++k) slopes_[k][j] = rates_[k];
     }
-    return std::nullopt;
+    return true;
   }
 
   /// Fits the series of the work's rate, and judges whether its last terms are below the tolerance.
@@ -301,19 +296,14 @@ class Direct final : public EventLocator {
     return share;
   }
 
-  /// True if the states up to the end of the piece lie on one branch of solutions: nodes lie before the end, and the
-  /// series through them converge.
+  /// True if the states up to the end of the piece lie on one branch of solutions: the series through them converge.
   [[nodiscard]] bool is_resolved() const {
-    // An event before this share of the piece may have all nodes beyond it.
-    constexpr double k_deep_inside = 0.5;
     // Largest last terms of a series, over its largest term, that show a single branch. The passage from one branch to
     // another is a jump or behaves like a square root, and its series converges more slowly. Smaller last terms, over
     // the unknown's scale, are round-off and pass.
     constexpr double k_unresolved = 1e-2;
     constexpr double k_round_off_of_branch = 1e-8;
-    const double length = piece_length();
     if (end_ - begin_ <= least_progress(begin_)) return true;
-    if (end_ - begin_ < k_deep_inside * length) return false;
     for (std::size_t k = 0; k < series_.size(); ++k) {
       if (series_[k].rest(k_round_off_of_branch * system_.unknowns()[k].scale) > k_unresolved) return false;
     }
