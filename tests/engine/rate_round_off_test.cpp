@@ -43,14 +43,5 @@ TEST(RateRoundOff, IsNotThatOfPiecesLittleShorter) {
   EXPECT_EQ(round_off.known(), 0.0);
 }
 
-TEST(RateRoundOff, NeedsThreeObservationsOfLikeSize) {
-  RateRoundOff round_off;
-  for (const double begin : {0.1, 0.2}) refuse(round_off, begin, 1e-9, 1e-9);
-  refuse(round_off, 0.3, 1e-7, 1e-7);
-  EXPECT_EQ(round_off.known(), 0.0);
-  for (const double begin : {0.4, 0.5}) refuse(round_off, begin, 1e-7, 1e-7);
-  EXPECT_EQ(round_off.known(), rate_with(1e-7).tail());
-}
-
 }  // namespace
 }  // namespace monograin::rate_round_off_test
