@@ -48,7 +48,7 @@ double controlled_step(double xi, double& step, long& rejections, Try&& attempt)
     try {
       const double tried = now;
       if (attempt(end, now) == odeint::success) {
-        step = std::max(now, is_last ? step : 0.0);
+        step = now;
         return is_last ? 1.0 : xi + tried;
       }
       // Odeint compares steps to within epsilon, and would try a step of about that length again and again.
