@@ -17,10 +17,6 @@ constexpr double k_least_size = 1e-2;  // least size of an unknown, over its sca
 
 }  // namespace
 
-double DifferenceJacobian::range_in_xi(double xi, double length) noexcept {
-  return 2.0 * std::max(std::min(k_cubic_root, k_share_of_step * length), k_least_increment * xi);
-}
-
 void DifferenceJacobian::at(double xi, std::span<const double> z, double length, std::span<double> jacobian,
                             std::span<double> by_xi) {
   static const double k_root = std::sqrt(k_epsilon);
@@ -43,9 +39,9 @@ void DifferenceJacobian::at(double xi, std::span<const double> z, double length,
   }
   // A second-order quotient over a good part of the step. Next to a pole, round-off of xi leaves few digits of a
   // quotient over a much smaller part, and a first-order quotient over the whole step has a large relative error.
-  const double onward = range_in_xi(xi, length);
+  const double onward = std::max(std::min(k_cubic_root, k_share_of_step * length), k_least_increment * xi);
   // Beyond xi = 1 another leg of the program begins: the quotient is taken backwards.
-  const double increment = shift_within_domain(0.5 * (xi + onward > 1.0 ? -onward : onward), [&](double by) {
+  const double increment = shift_within_domain(xi + 2.0 * onward > 1.0 ? -onward : onward, [&](double by) {
     form_.rates(xi + by, point_, shifted_);
     form_.rates(xi + 2.0 * by, point_, beyond_);
   });

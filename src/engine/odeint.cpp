@@ -265,7 +265,7 @@ class RosenbrockStepper final : public Stepper {
     begin_ = end_;
     method_.begin_step();
     end_ = controlled_step(begin_, step_, rejections, [&](double& end, double& step) {
-      length_ = known_for_ = step;
+      length_ = step;
       if (!method_.try_step(end, step)) return odeint::fail;
       // A step is accepted only if the equations hold at its end, however small its error.
       form_.rates(end, {method_.end_state(), size_}, end_rates_);
@@ -275,21 +275,13 @@ class RosenbrockStepper final : public Stepper {
   }
 
   void state_at(double xi, std::span<double> z) override {
-    const double* state = xi == end_ ? method_.end_state() : xi == begin_ ? method_.begin_state() : state_between(xi);
+    const double* state = xi == end_     ? method_.end_state()
+                          : xi == begin_ ? method_.begin_state()
+                                         : method_.state_at(xi, begin_);
     std::copy_n(state, size_, z.begin());
   }
 
  private:
-  /// State within the step. The derivatives of the whole step may come from beyond a regime that is as short as the
-  /// part up to xi; they are then computed anew for that part.
-  const double* state_between(double xi) {
-    const double part = xi - begin_;
-    const double length = DifferenceJacobian::range_in_xi(begin_, length_) > part ? part : length_;
-    const bool is_known = length == known_for_;
-    known_for_ = length;
-    return method_.state_at(xi, begin_, is_known);
-  }
-
   static void rates(void* self, double, const double* z, double* dz) {
     auto& stepper = *static_cast<RosenbrockStepper*>(self);
     // As an unknown, xi may pass the end of the leg by round-off, where the prescribed force may be tensile.
@@ -301,7 +293,7 @@ class RosenbrockStepper final : public Stepper {
     auto& stepper = *static_cast<RosenbrockStepper*>(self);
     const std::size_t size = stepper.size_;
     ++stepper.jacobian_evaluations;
-    stepper.jacobian_.at(z[size], {z, size}, stepper.known_for_, stepper.by_z_, stepper.by_xi_);
+    stepper.jacobian_.at(z[size], {z, size}, stepper.length_, stepper.by_z_, stepper.by_xi_);
     std::fill_n(by_time, size + 1, 0.0);
     for (std::size_t i = 0; i < size; ++i) {
       double* const row = std::copy_n(stepper.by_z_.data() + i * size, size, matrix + i * (size + 1));
@@ -316,8 +308,7 @@ class RosenbrockStepper final : public Stepper {
   Rosenbrock4 method_;
   std::vector<double> start_, by_z_, by_xi_, end_rates_;
   double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
-  double length_ = k_first_step;     ///< length of the step that is tried
-  double known_for_ = k_first_step;  ///< length of the step for which the derivatives were computed
+  double length_ = k_first_step;  ///< length of the step that is tried
 };
 
 template <class State>

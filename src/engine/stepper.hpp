@@ -135,11 +135,8 @@ class DifferenceJacobian {
   explicit DifferenceJacobian(ScaledForm& form)
       : form_(form), base_(form.size()), shifted_(form.size()), beyond_(form.size()), point_(form.size()) {}
 
-  /// Distance from xi up to which rates are evaluated for d(rates)/dxi. It shrinks with the length of the step for
-  /// which the derivative is meant, because a regime may be as short as that step.
-  [[nodiscard]] static double range_in_xi(double xi, double length) noexcept;
   /// Computes both derivatives at (xi, z).
-  /// @param length    of the step for which they are meant
+  /// @param length    of the step for which they are meant; increments shrink with it, because a regime may be as short
   /// @param jacobian  receives d(rates)/dz, row by row
   /// @param by_xi     receives d(rates)/dxi
   void at(double xi, std::span<const double> z, double length, std::span<double> jacobian, std::span<double> by_xi);

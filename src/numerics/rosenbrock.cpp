@@ -107,9 +107,9 @@ const double* Rosenbrock4::begin_state() const noexcept { return &implementation
 
 const double* Rosenbrock4::end_state() const noexcept { return &implementation_->now[0]; }
 
-const double* Rosenbrock4::state_at(double xi, double begin, bool is_known) {
+const double* Rosenbrock4::state_at(double xi, double begin) {
   Implementation& own = *implementation_;
-  own.controlled.stepper().do_step(own.system(is_known), own.old, begin, own.between, xi - begin);
+  own.controlled.stepper().do_step(own.system(true), own.old, begin, own.between, xi - begin);
   return &own.between[0];
 }
 

@@ -36,9 +36,8 @@ class Rosenbrock4 {
   [[nodiscard]] const double* end_state() const noexcept;
   /// State at xi within the last step, computed by a shorter step: the method's own interpolation is some orders less
   /// accurate. Valid until the next call.
-  /// @param begin     where the last step begins
-  /// @param is_known  the derivatives that were computed last are those at the step's beginning
-  [[nodiscard]] const double* state_at(double xi, double begin, bool is_known);
+  /// @param begin  where the last step begins
+  [[nodiscard]] const double* state_at(double xi, double begin);
 
  private:
   struct Implementation;
