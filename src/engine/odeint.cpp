@@ -242,8 +242,7 @@ class RosenbrockStepper final : public Stepper {
                 of_step(tolerances, k_share_of_many).rtol, k_round_off),
         start_(size_ + 1),
         by_z_(size_ * size_),
-        by_xi_(size_),
-        end_rates_(size_) {
+        by_xi_(size_) {
     order = 4;
   }
 
@@ -266,10 +265,7 @@ class RosenbrockStepper final : public Stepper {
     method_.begin_step();
     end_ = controlled_step(begin_, step_, rejections, [&](double& end, double& step) {
       length_ = step;
-      if (!method_.try_step(end, step)) return odeint::fail;
-      // A step is accepted only if the equations hold at its end, however small its error.
-      form_.rates(end, {method_.end_state(), size_}, end_rates_);
-      return odeint::success;
+      return method_.try_step(end, step) ? odeint::success : odeint::fail;
     });
     return end_;
   }
@@ -306,7 +302,7 @@ class RosenbrockStepper final : public Stepper {
   DifferenceJacobian jacobian_;
   std::size_t size_;
   Rosenbrock4 method_;
-  std::vector<double> start_, by_z_, by_xi_, end_rates_;
+  std::vector<double> start_, by_z_, by_xi_;
   double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
   double length_ = k_first_step;  ///< length of the step that is tried
 };
