@@ -266,13 +266,7 @@ double EventLocator::first_root(const View& before, const View& after, std::size
       up_to = {first, root_values_};
     }
     if (!crosses(directions[g], before.values[g], up_to.values[g])) continue;
-    double root = up_to.xi;
-    try {
-      root = polish(g, before, up_to);
-    } catch (const std::domain_error&) {
-      // Evaluations this near to each other are both the root, whether or not a state exists between them.
-      if (up_to.xi - before.xi >= 2.0 * least_progress(begin_)) throw;
-    }
+    const double root = polish(g, before, up_to);
     if (root >= first) continue;
     first = root;
     guard = g;
@@ -283,7 +277,7 @@ double EventLocator::first_root(const View& before, const View& after, std::size
 /// Root of one guard between two evaluations: at or just past zero, so that the event lies behind xi and not ahead.
 double EventLocator::polish(std::size_t guard, const View& before, const View& after) {
   // If the evaluations are as near as the round-off of xi, both are the root.
-  if (after.values[guard] == 0.0 || !(after.xi > before.xi)) return after.xi;
+  if (!(after.xi > before.xi)) return after.xi;
   const auto [smaller, larger] = std::minmax({std::abs(before.values[guard]), std::abs(after.values[guard])});
   const double round_off = std::min(k_round_off_of_guard * larger, k_most_of_guard * smaller);
   double value = 0.0;
