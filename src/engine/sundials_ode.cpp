@@ -72,7 +72,6 @@ struct CvodeLibrary {
   static constexpr auto error_weights = CVodeGetErrWeights;
   static constexpr auto local_errors = CVodeGetEstLocalErrors;
   static constexpr auto flag_name = CVodeGetReturnFlagName;
-  static constexpr bool remembers_roots = false;
 
   static int reinit(void* memory, OdeMethod, CVRhsFn, realtype xi, N_Vector y) { return CVodeReInit(memory, xi, y); }
   static long rhs_evaluations(void* memory) {
@@ -120,9 +119,6 @@ struct ArkodeLibrary {
   static constexpr auto error_weights = ARKStepGetErrWeights;
   static constexpr auto local_errors = ARKStepGetEstLocalErrors;
   static constexpr auto flag_name = ARKStepGetReturnFlagName;
-  /// ARKStepReInit does not forget that the last call ended at a root (6.4.1). If a guard is exactly zero, a later call
-  /// takes it for the same root and gives up.
-  static constexpr bool remembers_roots = true;
   static constexpr int order = 5;  // highest order that the interpolation keeps
 
   static int reinit(void* memory, OdeMethod method, ARKRhsFn rates, realtype xi, N_Vector y) {
@@ -192,20 +188,9 @@ class SundialsOde final : public Integrator {
       restart(0.0);
       last_length_ = 0.0;
     }
-    const auto step_once = [&] {
-      return step_within_domain(
-          pending_, begin, [this] { return evolve(); },
-          [this](double* step) { return Library::current_step(memory_.get(), step); }, restart);
-    };
-    int flag = step_once();
-    if (flag < 0 && Library::remembers_roots && follows_root_) {
-      past_ = statistics();
-      for_jacobian_ = 0;
-      set_up();
-      follows_root_ = false;
-      restart(0.0);
-      flag = step_once();
-    }
+    const int flag = step_within_domain(
+        pending_, begin, [this] { return evolve(); },
+        [this](double* step) { return Library::current_step(memory_.get(), step); }, restart);
     check(Library::name, flag);
     if (flag != Library::root_return && is_stuck_at_end(pending_, begin, end_, last_length_)) {
       throw *pending_.nearest_domain_end();
@@ -283,7 +268,6 @@ class SundialsOde final : public Integrator {
     past_ = statistics();  // counters are reset with the state
     for_jacobian_ = 0;
     end_ = xi;
-    follows_root_ = follows_root_ || !roots_.fired.empty();
     N_VConst(0.0, rates_.get());  // rates of an earlier mode do not count
     find_first_rates();
     check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
@@ -501,7 +485,6 @@ class SundialsOde final : public Integrator {
   ExplicitForm form_;
   Pending pending_;
   RootList roots_;
-  bool follows_root_ = false;  ///< a call since memory_ was made has ended at a root
   double end_ = 0.0;
   double segment_begin_ = 0.0;
   std::vector<double> first_state_;  ///< complete state where this segment begins
