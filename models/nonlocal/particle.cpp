@@ -7,6 +7,7 @@
 #include "contacts/centre/obstacles.hpp"
 #include "contacts/side_ahead.hpp"
 #include "system/equations.hpp"
+#include "system/limit.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::nonlocal {

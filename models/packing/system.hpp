@@ -22,6 +22,7 @@
 
 #include "packing/equations.hpp"
 #include "packing/events.hpp"
+#include "system/hybrid_system.hpp"
 
 namespace monograin::packing {
 
