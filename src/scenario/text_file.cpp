@@ -8,9 +8,8 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <cstdio>
 #include <fstream>
-#include <iostream>
+#include <istream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -101,14 +100,24 @@ FileText read_stream(std::istream& stream, std::size_t largest) {
   return {std::move(text), {}};
 }
 
+/// Reads the standard input by its descriptor: std::cin takes an error, such as that of a folder, for the end.
+FileText read_standard_input(std::size_t largest) {
+  std::string text;
+  std::array<char, 65536> chunk{};
+  while (text.size() <= largest) {
+    const ssize_t count = ::read(STDIN_FILENO, chunk.data(), chunk.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return {{}, fmt::format("it cannot be read: {}", std::generic_category().message(errno))};
+    if (count == 0) break;
+    text.append(chunk.data(), static_cast<std::size_t>(count));
+  }
+  return {std::move(text), {}};
+}
+
 }  // namespace
 
 FileText read_text_file(const fs::path& file, std::size_t largest, FileKind kind) {
-  if (kind == FileKind::any && file == k_standard_input) {
-    FileText read = read_stream(std::cin, largest);
-    // The stream takes an error of the standard input, such as that of a folder, for its end.
-    return std::ferror(stdin) == 0 ? read : FileText{{}, "it cannot be read"};
-  }
+  if (kind == FileKind::any && file == k_standard_input) return read_standard_input(largest);
   std::error_code error;
   const auto status = fs::status(file, error);
   if (status.type() == fs::file_type::none) return {{}, error.message()};
