@@ -50,15 +50,16 @@ std::optional<double> displacement_ahead(const Particle& p, const Motion& motion
 
 /// True if a contact touches from here on: by its elastic displacement or, if that is within its slack, by the
 /// displacement a little later.
-/// @param is_met  whether the guard of its touch has fired, which decides if no state exists ahead
+/// @param is_made, is_lost  which of its guards has fired. A guard that is met is at the slack; one that fires because
+/// it is within the integrator's tolerance may be anywhere inside.
 bool will_touch(const Particle& p, const Motion& motion, std::size_t i, double xi, std::span<const double> y,
-                bool is_met) {
+                bool is_made, bool is_lost) {
   const ClassState& c = p.classes[i];
   if (c.is_force_controlled()) return c.contact.F > 0.0 || c.drive.rate() > 0.0;
   const double u = c.contact.u;
-  if (std::abs(u) > p.slack(i)) return u > 0.0;
+  if (std::abs(u) > (is_made || is_lost ? 0.5 : 1.0) * p.slack(i)) return u > 0.0;
   const std::optional<double> ahead = displacement_ahead(p, motion, i, xi, y);
-  return ahead ? *ahead > 0.0 : is_met;
+  return ahead ? *ahead > 0.0 : is_made;
 }
 
 /// Finds the largest set of contacts that can flow together. Takes in all contacts at yield whose yield function would
@@ -164,7 +165,7 @@ void decide_mode(Particle& p, Motion& motion, double xi, std::span<const double>
   };
   const auto note = [&](std::string_view event, std::size_t i) { log.push_back({event, static_cast<int>(i)}); };
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const bool touches = will_touch(p, motion, i, xi, y, has_fired(k_made, i));
+    const bool touches = will_touch(p, motion, i, xi, y, has_fired(k_made, i), has_fired(k_lost, i));
     if (touches != p.classes[i].touches) note(touches ? "contact-made" : "contact-lost", i);
     p.classes[i].touches = touches;
   }
