@@ -11,6 +11,7 @@
 #include "scenario/edit.hpp"
 #include "scenario/file_keys.hpp"
 #include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
 #include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_figure.hpp"
 #include "study/calibrate/calibration_language.hpp"

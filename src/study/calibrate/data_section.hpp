@@ -11,6 +11,7 @@
 
 #include "scenario/measured_data.hpp"
 #include "scenario/section.hpp"
+#include "study/calibrate/calibration.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/machine.hpp"
 
