@@ -8,8 +8,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <fstream>
-#include <istream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -89,23 +87,12 @@ class PartialFile {
          is_number(std::string_view(numbers).substr(dash + 1));
 }
 
-FileText read_stream(std::istream& stream, std::size_t largest) {
-  std::string text;
-  std::array<char, 65536> chunk{};
-  while (stream && text.size() <= largest) {
-    stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
-    text.append(chunk.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  if (stream.bad()) return {{}, "it cannot be read"};
-  return {std::move(text), {}};
-}
-
-/// Reads the standard input by its descriptor: std::cin takes an error, such as that of a folder, for the end.
-FileText read_standard_input(std::size_t largest) {
+/// Reads an open file. A stream would take some errors, such as that of a folder as standard input, for the end.
+FileText read_descriptor(int descriptor, std::size_t largest) {
   std::string text;
   std::array<char, 65536> chunk{};
   while (text.size() <= largest) {
-    const ssize_t count = ::read(STDIN_FILENO, chunk.data(), chunk.size());
+    const ssize_t count = ::read(descriptor, chunk.data(), chunk.size());
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return {{}, fmt::format("it cannot be read: {}", std::generic_category().message(errno))};
     if (count == 0) break;
@@ -117,16 +104,20 @@ FileText read_standard_input(std::size_t largest) {
 }  // namespace
 
 FileText read_text_file(const fs::path& file, std::size_t largest, FileKind kind) {
-  if (kind == FileKind::any && file == k_standard_input) return read_standard_input(largest);
+  if (kind == FileKind::any && file == k_standard_input) return read_descriptor(STDIN_FILENO, largest);
   std::error_code error;
   const auto status = fs::status(file, error);
   if (status.type() == fs::file_type::none) return {{}, error.message()};
   if (!fs::exists(status)) return {{}, "there is no such file"};
   if (fs::is_directory(status)) return {{}, "this is a directory"};
   if (kind == FileKind::regular && !fs::is_regular_file(status)) return {{}, "this is a device or a pipe"};
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.is_open()) return {{}, "the file cannot be read, perhaps for want of permission"};
-  return read_stream(stream, largest);
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return {{}, "the file cannot be read, perhaps for want of permission"};
+  const struct Closed {
+    int descriptor;
+    ~Closed() { close(descriptor); }
+  } closed{descriptor};
+  return read_descriptor(descriptor, largest);
 }
 
 fs::path name_of_file(const fs::path& file, FileKind kind) {

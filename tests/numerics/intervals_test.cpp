@@ -13,10 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "numerics/curve_fit.hpp"
 #include "numerics/derivatives.hpp"
 
 namespace monograin::intervals_test {
 namespace {
+
+using curve_fit::k_line;
 
 constexpr std::size_t k_rows = 200;
 
@@ -51,8 +54,6 @@ Fitted fitted(const LeastSquaresProblem& problem, std::vector<double> deviations
   const Eigen::MatrixXd jacobian = residual_jacobian(problem, solution->parameters);
   return {*solution, uncertainty_of(problem, *solution, jacobian, k_rows, 0.95, {}, std::move(deviations))};
 }
-
-const auto k_line = [](double x, std::span<const double> p) { return p[0] + p[1] * x; };
 
 TEST(Intervals, ProfilesOfALinearProblemAreThoseOfTheCovariance) {
   const auto problem = problem_of(k_line);
