@@ -3,6 +3,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace monograin {
 
@@ -17,6 +18,7 @@ namespace {
 constexpr double k_coarser = 20.0;
 constexpr double k_coarser_of_adams = 30.0;
 constexpr double k_coarser_of_ida = 100.0;
+constexpr double k_round_off_of_residuals = 2.0 * k_epsilon;  // over the size of an unknown
 
 /// Raw handles for the library's functions.
 std::vector<N_Vector> handles(const std::vector<NVector>& vectors) {
@@ -44,17 +46,17 @@ SundialsSensitivities<Library>::SundialsSensitivities(ForwardSensitivities& of, 
     }
     N_VScale(coarser / of.magnitude(k), atol, atol_.emplace_back(N_VClone(atol)).get());
     magnitudes_.push_back(of.magnitude(k));
-    if (Library::is_implicit) raise_tolerances(k);
   }
 }
 
 /// Raises the tolerances of s above the round-off in the difference of the neighbours' residuals, which no corrector
-/// removes.
+/// removes. It counts where s is zero. IDAS takes a correction as the last one if it is below 0.0033 of the tolerance.
 template <class Library>
-void SundialsSensitivities<Library>::raise_tolerances(std::size_t number) {
+void SundialsSensitivities<Library>::raise_tolerances(std::size_t number, std::span<const double> y) {
   const auto atol = view(atol_[number].get());
   for (std::size_t i = 0; i < atol.size(); ++i) {
-    atol[i] = std::max(atol[i], sundials_boundary::k_above_round_off * of_.scale(i) / of_.step(number));
+    const double size = std::max(of_.scale(i), std::abs(y[i]));
+    atol[i] = std::max(atol[i], k_round_off_of_residuals / 0.0033 * size / of_.step(number));
   }
 }
 
@@ -63,6 +65,7 @@ void SundialsSensitivities<Library>::take_state(double xi, std::span<const doubl
   for (std::size_t k = 0; k < s_.size(); ++k) {
     const auto begin = view(begin_[k].get());
     std::ranges::copy(of_.state(k).first(begin.size()), begin.begin());
+    if (Library::is_implicit) raise_tolerances(k, y);
   }
   correct_begin(xi, y);
   restore();
@@ -95,7 +98,10 @@ int SundialsSensitivities<Library>::start(void* memory, typename Library::Functi
   if (!of_.is_active()) return initialized_ == memory ? Library::switch_off(memory) : 0;
   std::vector<N_Vector> s = handles(s_);
   std::vector<N_Vector> ds = handles(ds_);
-  if (initialized_ == memory) return Library::reinit(memory, s.data(), ds.data());
+  if (initialized_ == memory) {
+    const int flag = Library::reinit(memory, s.data(), ds.data());
+    return flag == 0 ? Library::set_tolerances(memory, rtol_, handles(atol_).data()) : flag;
+  }
   const int count = static_cast<int>(s.size());
   int flag = Library::init(memory, count, function, s.data(), ds.data());
   if (flag == 0) flag = Library::set_parameters(memory, nullptr, magnitudes_.data(), nullptr);

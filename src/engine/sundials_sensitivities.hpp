@@ -82,7 +82,7 @@ class SundialsSensitivities {
  private:
   using Vectors = std::vector<sundials_boundary::NVector>;
 
-  void raise_tolerances(std::size_t number);
+  void raise_tolerances(std::size_t number, std::span<const double> y);
 
   ForwardSensitivities& of_;
   bool has_fixed_point_;
