@@ -39,12 +39,13 @@ class Guards {
 template <class Law>
 void arm_wall(const Law& law, const WallContact<Law>& c, std::size_t i, Guards& guards) {
   const int direction = c.drive().direction();
-  const auto add = [&](GuardKind kind, std::string_view name, double target) {
+  const auto add = [&](GuardKind kind, std::string_view name, double target, bool is_branch_end = false) {
     guards.add({.kind = kind,
                 .index = static_cast<int>(i),
                 .direction = direction,
                 .name = name,
                 .is_exact = true,
+                .is_branch_end = is_branch_end,
                 .is_monotone = true},
                target);
   };
@@ -52,7 +53,8 @@ void arm_wall(const Law& law, const WallContact<Law>& c, std::size_t i, Guards& 
   if (direction > 0 && c.touches()) {
     const auto ahead = c.next(law);
     const double target = ahead ? c.prescribed_at(law, *ahead) : 0.0;
-    if (ahead && c.passes(target)) add(k_boundary, ahead->event, target);
+    // Under force, the rate of the displacement is 1 over the slope of the force.
+    if (ahead && c.passes(target)) add(k_boundary, ahead->event, target, ahead->is_singular && c.is_force_controlled());
   } else if (direction > 0 && c.passes_opening(law)) {
     add(k_made, c.made_event(law), opening());
   } else if (direction < 0 && c.touches() && c.passes_opening(law)) {

@@ -21,6 +21,7 @@ struct Boundary {
   std::string_view event{};           ///< empty: no event
   std::optional<LimitPoint> limit{};  ///< the law ends here
   bool is_of_followers = false;       ///< the event belongs to the contacts that follow this one
+  bool is_singular = false;           ///< second derivatives of the force are unbounded towards it
 };
 
 /// Force and contact radius of a contact that bears.

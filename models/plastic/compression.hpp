@@ -79,6 +79,7 @@ struct Boundary {
   std::string_view event;
   double approach = 0.0;  ///< x; still belongs to the regime before
   Regime beyond = Regime::undefined;
+  bool is_singular = false;  ///< second derivatives of the pressure are unbounded towards it
 };
 
 /// Boundaries in ascending order; no law has more than four. The vector does not allocate, because every instant of a

@@ -228,12 +228,14 @@ typename WallLaw<Law>::Ahead WallLaw<Law>::ahead(const Branch& b) const {
     const Boundary& last = boundaries_.back();
     first.boundary = {last.approach, last.event, LimitPoint{Limit::cell_filled, -1, "displacement/R0", last.approach}};
   }
-  const auto consider = [&](double position, std::string_view event, Kind kind) {
-    if (position < first.boundary.position) first = {{position, event}, kind};
+  const auto consider = [&](const contacts::Boundary& boundary, Kind kind) {
+    if (boundary.position < first.boundary.position) first = {boundary, kind};
   };
-  if (b.next < boundaries_.size() && boundaries_[b.next].beyond != Regime::undefined)
-    consider(boundaries_[b.next].approach, boundaries_[b.next].event, Kind::of_law);
-  if (impingement_ && !b.has_impinged) consider(*impingement_, "impingement", Kind::impingement);
+  if (b.next < boundaries_.size() && boundaries_[b.next].beyond != Regime::undefined) {
+    const Boundary& of_law = boundaries_[b.next];
+    consider({.position = of_law.approach, .event = of_law.event, .is_singular = of_law.is_singular}, Kind::of_law);
+  }
+  if (impingement_ && !b.has_impinged) consider({.position = *impingement_, .event = "impingement"}, Kind::impingement);
   return first;
 }
 

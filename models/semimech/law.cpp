@@ -213,8 +213,9 @@ Law make_law(const Material& material, Configuration configuration) {
 }
 
 Boundaries boundaries(const Law& law) {
+  const bool is_singular = law.logarithm_exponent < 2.0;
   Boundaries list{{"yield", law.yield_approach, Regime::elastic_plastic},
-                  {"fully-plastic", law.fall.start, Regime::fully_plastic}};
+                  {"fully-plastic", law.fall.start, Regime::fully_plastic, is_singular}};
   if (is_enclosed(law.configuration)) {
     list.push_back({"low-compressibility", law.fall.end, Regime::low_compressibility});
     list.push_back({"zero-porosity", law.stiffening.zero_porosity, Regime::elastic_volumetric});

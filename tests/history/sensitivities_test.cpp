@@ -548,6 +548,23 @@ TEST(Sensitivities, IntegratedAreThoseOfDirectWhereTheyGrowFasterThanTheStates) 
   expect_forward_as_direct(text, "material.poisson_ratio", {"axial.force", "work"});
 }
 
+// At the greatest pressure the second derivative of the force is infinite. The walls' displacement under force then has
+// a rate whose derivative grows without bound towards this event.
+TEST(Sensitivities, IntegratedAreThoseOfDirectWhereTheForceBendsWithoutBound) {
+  std::string text = with_key(with_steps(R"([
+  { force = "20 kN", duration = "1 s" },
+])"),
+                              "material.youngs_modulus");
+  text.replace(text.find("mdr"), 3, "semimech");
+  text.replace(text.find("50 MPa"), 6, "30 MPa");
+  for (const char* configuration : {"simple", "die"}) {
+    SCOPED_TRACE(configuration);
+    text.replace(text.find("configuration"), text.find("steps") - text.find("configuration"),
+                 fmt::format("configuration = \"{}\"\n", configuration));
+    expect_forward_as_direct(text, "material.youngs_modulus", {"axial.displacement", "axial.contact_radius", "work"});
+  }
+}
+
 TEST(Sensitivities, IntegratedAreUndefinedWhereRoundingOfAnInstantShows) {
   std::string text = with_steps(R"([
   { displacement = "0.2 R0", duration = "1 s" },

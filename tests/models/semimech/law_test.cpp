@@ -711,10 +711,29 @@ TEST(SemimechBoundaries, BelongToTheRegimeBefore) {
   for (const Configuration configuration : k_configurations) {
     const Law law = Steel{200e9, 0.3, 200e6}.law(configuration);
     Regime before = Regime::elastic;
-    for (const auto& [event, x, beyond] : boundaries(law)) {
-      EXPECT_EQ(regime_at(law, x), before) << configuration << ", " << event;
-      EXPECT_EQ(regime_at(law, std::nextafter(x, 1.0)), beyond) << configuration << ", " << event;
-      before = beyond;
+    for (const Boundary& end : boundaries(law)) {
+      EXPECT_EQ(regime_at(law, end.approach), before) << configuration << ", " << end.event;
+      EXPECT_EQ(regime_at(law, std::nextafter(end.approach, 1.0)), end.beyond) << configuration << ", " << end.event;
+      before = end.beyond;
+    }
+  }
+}
+
+// Where the second derivative of the pressure is bounded, its slope changes over a hundredth of a distance by a
+// hundredth of the change over the whole distance, or less.
+TEST(SemimechBoundaries, AreSingularWhereTheSecondDerivativeOfThePressureIsUnbounded) {
+  for (const double youngs_modulus : {6e9, 20e9, 200e9}) {
+    const Law law = Steel{youngs_modulus, 0.3, 200e6}.law(Configuration::simple);
+    Regime before = Regime::elastic;
+    for (const Boundary& end : boundaries(law)) {
+      const auto change = [&](double distance) {
+        const double x = end.approach;
+        return state_in(law, before, x).pressure_by_approach - state_in(law, before, x - distance).pressure_by_approach;
+      };
+      const double distance = 1e-3 * end.approach;
+      const double ratio = change(0.01 * distance) / change(distance);
+      EXPECT_EQ(ratio > 0.02, end.is_singular) << youngs_modulus << ", " << end.event << ": " << ratio;
+      before = end.beyond;
     }
   }
 }
