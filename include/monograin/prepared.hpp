@@ -30,8 +30,8 @@ struct MapResult {
 
 /// A scenario that is read once and run with different values of some keys.
 ///
-/// Results are bitwise equal to those of a file with these values in it, and take a fraction of the time. Copies share
-/// the scenario that was read. All functions may be called from many threads.
+/// Results of run() are bitwise equal to those of a file with these values in it. Copies share the scenario that was
+/// read. All functions may be called from many threads.
 class PreparedScenario {
  public:
   /// Reads and checks a scenario.

@@ -17,8 +17,8 @@ from .runs import Run, Scenario, checked
 class Prepared:
     """A scenario that is read once and run with different values of some keys.
 
-    :meth:`monograin.Scenario.prepare` makes it. Results are bitwise equal to those of the scenario with these values in
-    its text.
+    :meth:`monograin.Scenario.prepare` makes it. Results of :meth:`run` are bitwise equal to those of the scenario with
+    these values in its text; those of :meth:`map` agree with them to round-off.
     """
 
     __slots__ = ("_scenario", "_core")
