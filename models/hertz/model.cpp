@@ -49,7 +49,7 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
           {"poisson_ratio", poisson_ratio, "-"},
           {"composite_modulus", composite_modulus(input), "Pa"},
           {"shear_modulus", youngs_modulus / (2.0 * (1.0 + poisson_ratio)), "Pa"},
-          {"bulk_compliance", (1.0 - 2.0 * poisson_ratio) / youngs_modulus, "1/Pa"}};
+          {"linear_compressibility", (1.0 - 2.0 * poisson_ratio) / youngs_modulus, "1/Pa", "1/(3 K)"}};
 }
 
 /// Displacement and force at which a contact meets a condition for the first time.

@@ -88,12 +88,12 @@ class VolumeSum {
  public:
   /// @param virial_of_all  sum of force times distance from the centre over all contacts
   /// @param virial         that sum over the contacts in Q
-  VolumeSum(double bulk_compliance, double virial_of_all, double virial) noexcept
-      : w_(k_scale * bulk_compliance * virial) {
+  VolumeSum(double linear_compressibility, double virial_of_all, double virial) noexcept
+      : w_(k_scale * linear_compressibility * virial) {
     sum_.discriminant = 1.0 - 4.0 * w_;
     root_of_discriminant_ = std::sqrt(sum_.discriminant);
-    compliance_over_root_ = k_per_solid_angle * bulk_compliance / root_of_discriminant_;
-    sum_.compression_of_all = k_scale * bulk_compliance * virial_of_all;
+    compliance_over_root_ = k_per_solid_angle * linear_compressibility / root_of_discriminant_;
+    sum_.compression_of_all = k_scale * linear_compressibility * virial_of_all;
   }
 
   /// Adds a class of contacts in Q.

@@ -116,7 +116,7 @@ Material make_material(double youngs_modulus, double poisson_ratio, double yield
   return {.composite_modulus = modulus,
           .poisson_ratio = poisson_ratio,
           .yield_stress = yield_stress,
-          .bulk_compliance = (1.0 - 2.0 * poisson_ratio) / youngs_modulus,
+          .linear_compressibility = (1.0 - 2.0 * poisson_ratio) / youngs_modulus,
           .yield_overlap_ratio = pressure_curve ? yield_overlap_ratio(modulus / yield_stress, *pressure_curve)
                                                 : yield_overlap_ratio(modulus / yield_stress),
           .pressure_curve = std::move(pressure_curve)};

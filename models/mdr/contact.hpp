@@ -16,10 +16,10 @@ enum class ElasticProfile { ellipse, parabola };
 
 /// Material of the particle, as far as contact laws depend on it.
 struct Material {
-  double composite_modulus = 0.0;  ///< E* = E/(1 - nu^2), > 0
-  double poisson_ratio = 0.0;      ///< in (-1, 0.5]
-  double yield_stress = 0.0;       ///< Y, > 0; infinity: never yields
-  double bulk_compliance = 0.0;    ///< 1/(3 kappa) = (1 - 2 nu)/E, >= 0
+  double composite_modulus = 0.0;       ///< E* = E/(1 - nu^2), > 0
+  double poisson_ratio = 0.0;           ///< in (-1, 0.5]
+  double yield_stress = 0.0;            ///< Y, > 0; infinity: never yields
+  double linear_compressibility = 0.0;  ///< strain of a length under unit pressure, 1/(3 kappa) = (1 - 2 nu)/E, >= 0
   /// Overlap over apparent radius at which an elastic contact yields; infinity: it never does.
   double yield_overlap_ratio = k_infinity;
   /// p_Y/Y over delta/R; null: the source's exponential.

@@ -103,7 +103,7 @@ void GuardSet::arm(Particle& p, ContactCaps& caps, double xi, std::span<const do
       has_cap_guards_ = true;
     }
   }
-  if (p.law().material.bulk_compliance > 0.0) list_.push_back({k_volume, -1, -1, "volume-limit"});
+  if (p.law().material.linear_compressibility > 0.0) list_.push_back({k_volume, -1, -1, "volume-limit"});
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.is_force_controlled(i) || 1.0 - p.drive(i).end() < 2.0 * contacts::k_least_distance || p.centre().is_free()) {
       list_.push_back({k_centre_reached, static_cast<int>(i), -1, "limit"});

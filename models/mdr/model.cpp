@@ -26,8 +26,8 @@ constexpr std::array k_material{
     QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive},
     QuantityKey{"poisson_ratio", "Poisson's ratio", Dimension::none, k_poisson_to_half},
     QuantityKey{"yield_stress", "uniaxial yield stress", Dimension::stress, k_positive},
-    QuantityKey{"surface_energy", "effective surface energy of the particle-wall contact", Dimension::surface_energy,
-                k_not_negative, 0.0},
+    QuantityKey{"surface_energy", "work of adhesion of particle and wall", Dimension::surface_energy, k_not_negative,
+                0.0},
 };
 
 /// Table of the model's own pressure curve, raised as by hardening.
@@ -233,7 +233,7 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
                                      {"poisson_ratio", poisson_ratio, "-"},
                                      {"composite_modulus", material.composite_modulus, "Pa"},
                                      {"shear_modulus", youngs_modulus / (2.0 * (1.0 + poisson_ratio)), "Pa"},
-                                     {"bulk_compliance", material.bulk_compliance, "1/Pa"}};
+                                     {"linear_compressibility", material.linear_compressibility, "1/Pa", "1/(3 K)"}};
   list.push_back({"yield_stress", yield_stress, "Pa"});
   list.push_back({"modulus_over_yield", youngs_modulus / yield_stress, "-"});
   if (material.pressure_curve) list.push_back({"pressure_table_end", material.pressure_curve->end(), "-"});

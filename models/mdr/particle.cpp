@@ -138,7 +138,7 @@ void Particle::sum_up(double xi) {
     virial_of_all += one;
     if (takes_part(i)) virial += one;
   }
-  VolumeSum volume(law().material.bulk_compliance, virial_of_all, virial);
+  VolumeSum volume(law().material.linear_compressibility, virial_of_all, virial);
   double power = 0.0;
   double force_work = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {

@@ -105,7 +105,7 @@ double growth_drive(const Particle& p, const Motion& motion) noexcept {
     goes_in = goes_in || rate > 0.0;
     goes_out = goes_out || rate < 0.0;
   }
-  return growth_drive(motion.demand, scale, goes_out && !goes_in, p.law().material.bulk_compliance > 0.0);
+  return growth_drive(motion.demand, scale, goes_out && !goes_in, p.law().material.linear_compressibility > 0.0);
 }
 
 bool has_greatest_force(const Particle& p, std::size_t i) noexcept {

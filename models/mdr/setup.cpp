@@ -27,7 +27,7 @@ Setup::Setup(const Settings& given, std::vector<ContactClass> contact_classes)
       make_material(settings.youngs_modulus, settings.poisson_ratio, settings.yield_stress, settings.pressure_curve);
   law.material.composite_modulus /= stress_unit();
   law.material.yield_stress /= stress_unit();
-  law.material.bulk_compliance *= stress_unit();
+  law.material.linear_compressibility *= stress_unit();
   law.surface_energy = settings.surface_energy / (stress_unit() * settings.initial_radius);
   law.elastic_profile = settings.elastic_profile;
   law.delta_max_rule = settings.delta_max_rule;
@@ -80,7 +80,7 @@ double Setup::growth_scale(double displacement) const noexcept {
   const double displaced = displacement * displacement;
   if (settings.radius_rule != RadiusRule::seed) return displaced;
   const double force = hertz_force(law.material.composite_modulus, 1.0, displacement);
-  return std::min(1.0, std::max(displaced, 0.5 * std::numbers::inv_pi * law.material.bulk_compliance * force));
+  return std::min(1.0, std::max(displaced, 0.5 * std::numbers::inv_pi * law.material.linear_compressibility * force));
 }
 
 double Setup::work_scale(double displacement) const noexcept {

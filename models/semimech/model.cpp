@@ -92,7 +92,7 @@ std::vector<DerivedParameter> parameters(const ModelInput& input, const FirstSte
   const Law law = law_of(input);
   std::vector<DerivedParameter> list =
       material_parameters(input, {{"youngs_modulus", "Pa"}, {"poisson_ratio", "-"}, {"yield_stress", "Pa"}});
-  list.push_back({"modulus_over_yield", law.material.modulus_over_yield, "-", "lambda"});
+  list.push_back({"plane_strain_modulus_over_yield", law.material.modulus_over_yield, "-", "lambda"});
   list.push_back({"bulk_over_yield", law.material.bulk_over_yield, "-", "zeta"});
   add_parameters(law.radius, list);
   list.push_back({"yield_approach", law.yield_approach, "-", "x_y"});

@@ -19,11 +19,11 @@ using Normals = std::vector<Eigen::Vector3d>;
 const Normals k_opposite{{1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}};
 
 /// Volume balance of n walls that press elastically.
-VolumeBalance balance(double n, double displacement, double r, double bulk_compliance, double rate = 1.0) {
+VolumeBalance balance(double n, double displacement, double r, double linear_compressibility, double rate = 1.0) {
   const double overlap = displacement + r;
   const Contact contact = elastic_contact(ElasticProfile::ellipse, 1.0, 1.0 + r, overlap);
   const double virial = n * contact.force * (1.0 - displacement);
-  VolumeSum sum(bulk_compliance, virial, virial);
+  VolumeSum sum(linear_compressibility, virial, virial);
   static_cast<void>(sum.add({n, contact, displacement, overlap, rate, 0.0}, 1.0 + r));
   return sum.finish(r);
 }

@@ -360,7 +360,7 @@ TEST(MdrUnloading, EndsWhereTheWallReachesTheCentre) {
 
 TEST(MdrMaterial, MayBeIncompressible) {
   const Dent dent{Grain{20, 0.5}, 0.2};
-  EXPECT_EQ(dent.material.bulk_compliance, 0.0);
+  EXPECT_EQ(dent.material.linear_compressibility, 0.0);
   // All laws are smooth in nu there: the difference to a neighbour is of that order.
   const Dent neighbour{Grain{20, 0.5 - 1e-9}, 0.2};
   for (const double u : {0.0, 0.5}) {
