@@ -44,6 +44,7 @@ constexpr std::array k_made_from_results{k_bands_file, k_sensitivities_file};
 struct Outcome {
   SweepRow row;
   std::string columns;
+  std::vector<std::string> warnings{};
 };
 
 /// Replaces the characters that a cell cannot contain.
@@ -157,6 +158,7 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
   if (!record) return outcome;
   outcome.row.status = to_string(record->status);
   outcome.row.reason = plain(record->message);
+  outcome.warnings = std::move(record->warnings);
   summarise(record->history, sweep.columns, layout, outcome);
   if (!histories.empty()) write_csv(histories / fmt::format("{}.csv", index + 1), record->history);
   return outcome;
@@ -354,25 +356,39 @@ class Rows {
   std::vector<std::string> columns_{};  ///< of all runs; empty before the first line
 };
 
-/// @return number of runs that were refused, stopped or failed
-std::size_t run_all(const Sweep& sweep, const SweepOptions& options, const std::vector<std::size_t>& runs,
-                    SweepJournal& journal) {
+/// Does runs of a sweep.
+[[nodiscard]] SweepOutcome run_all(const Sweep& sweep, const SweepOptions& options,
+                                   const std::vector<std::size_t>& runs, SweepJournal& journal) {
   const fs::path histories = sweep.keeps_histories ? options.folder / "histories" : fs::path();
   if (!histories.empty()) fs::create_directories(histories);
   const LeftOut left_out = not_needed_by(sweep.columns);
   const std::size_t threads = thread_count(options.threads);
   std::vector<Layout> layouts(threads);
   std::mutex mutex;
-  std::size_t done = 0;
-  std::size_t ended_early = 0;
+  SweepOutcome all;
+  std::size_t with_warnings = 0;
+  std::size_t first = sweep.runs.size() + 1;  // number of the first of them
+  std::vector<std::string> of_first;
   for_each_index(runs.size(), threads, [&](std::size_t i, std::size_t thread) {
-    const Outcome outcome = run_one(sweep, runs[i], histories, left_out, layouts[thread]);
+    Outcome outcome = run_one(sweep, runs[i], histories, left_out, layouts[thread]);
     const std::scoped_lock lock(mutex);
     journal.append(outcome.row, outcome.columns);
-    if (outcome.row.status != to_string(RunStatus::complete)) ++ended_early;
-    if (options.progress) options.progress(++done, runs.size());
+    ++all.runs_now;
+    if (outcome.row.status != to_string(RunStatus::complete)) ++all.runs_ended_early;
+    if (!outcome.warnings.empty()) {
+      ++with_warnings;
+      if (outcome.row.run < first) {
+        first = outcome.row.run;
+        of_first = std::move(outcome.warnings);
+      }
+    }
+    if (options.progress) options.progress(all.runs_now, runs.size());
   });
-  return ended_early;
+  if (with_warnings > 0) {
+    all.warning =
+        fmt::format("{} of {} runs warn; run {}: {}", with_warnings, all.runs_now, first, fmt::join(of_first, "; "));
+  }
+  return all;
 }
 
 }  // namespace
@@ -397,12 +413,12 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
     SweepJournal journal(journal_file(options), sweep.digest);
     std::vector<std::size_t> runs;
     Rows rows(sweep, options.folder);
-    outcome.runs_before = rows.count();
+    const std::size_t before = rows.count();
     for (std::size_t run = options.shard.index - 1; run < sweep.runs.size(); run += options.shard.count) {
       if (!rows.has(run)) runs.push_back(run);
     }
-    outcome.runs_ended_early = run_all(sweep, options, runs, journal);
-    outcome.runs_now = runs.size();
+    outcome = run_all(sweep, options, runs, journal);
+    outcome.runs_before = before;
   }
   const FolderLock lock(options.folder);
   if (const auto found = found_results(sweep, options.folder, options.format)) {  // another shard has written them

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "study/sweep/sweep_file.hpp"
 #include "study/sweep/sweep_results.hpp"
@@ -34,6 +35,7 @@ struct SweepOutcome {
   std::size_t runs_now = 0;          ///< done by this call
   std::size_t runs_ended_early = 0;  ///< of those done by this call: refused, stopped or failed
   std::size_t runs_missing = 0;      ///< left to other shards; 0: the results are complete
+  std::string warning{};             ///< how many of those done by this call warn, and of what the first one does
   std::filesystem::path results{};   ///< their file; empty while runs are missing
 };
 

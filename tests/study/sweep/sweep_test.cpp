@@ -623,6 +623,21 @@ TEST_F(SweepFiles, TheOutcomeCountsRunsThatEndedEarly) {
   EXPECT_EQ(outcome.runs_now, complete + outcome.runs_ended_early);
 }
 
+// E/Y is 50 and 500; semimech was fitted from 117 (1 - nu^2) on.
+TEST_F(SweepFiles, TheOutcomeSaysHowManyRunsWarnAndOfWhat) {
+  std::string scenario(k_scenario);
+  scenario.replace(scenario.find("mdr"), 3, "semimech");
+  scenario.erase(scenario.find(", { force"), std::string(R"(, { force = "0 N", duration = "1 s" })").size());
+  write("small.toml", scenario);
+  const std::string text = R"toml(scenario = "small.toml"
+[vary]
+"material.yield_stress" = { values = ["2 MPa", "20 MPa"] }
+)toml";
+  const SweepOptions options{.folder = path("out"), .threads = 2, .shard = {}, .progress = {}};
+  EXPECT_TRUE(run_sweep(read(text), options).warning.starts_with("1 of 2 runs warn; run 2: E/((1-nu^2) Y) is outside"));
+  EXPECT_EQ(run_sweep(read(text), options).warning, "") << "nothing was run";
+}
+
 TEST_F(SweepFiles, TheResultsDoNotDependOnTheNumberOfThreads) {
   const Sweep sweep = read(k_grid);
   const std::string one = results(sweep, "one", 1);
