@@ -163,7 +163,7 @@ def pull_off_force(
     Args:
         modulus: composite modulus E* [Pa], above 0.
         radius: apparent radius R [m], above 0.
-        surface_energy: effective surface energy of particle and wall [J/m^2], above 0.
+        surface_energy: work of adhesion of particle and wall [J/m^2], above 0.
         control: controlled quantity at pull-off, ``"force"`` or ``"displacement"``.
         profile: ``"ellipse"`` or ``"parabola"``. The parabola gives -(3/2) pi R times the surface energy under force
             control, as Johnson, Kendall and Roberts (1971) do.
@@ -230,7 +230,7 @@ def peel_curve(
             contact radius.
         heights: gap of the relaxed surface from a flat wall that touches it on the axis [m], shape (n,); only differences count.
         modulus: composite modulus E* = E/(1 - nu^2) [Pa], above 0.
-        surface_energy: effective surface energy of particle and wall [J/m^2], above 0.
+        surface_energy: work of adhesion of particle and wall [J/m^2], above 0.
         control: controlled quantity, ``"displacement"`` or ``"force"``. Under force control the last force is that of pull-off.
         points: number of states, 2 or more.
 
