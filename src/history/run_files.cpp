@@ -22,17 +22,6 @@ constexpr std::size_t k_largest_run = std::size_t{256} << 20U;
 
 Json versions() { return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}}; }
 
-/// Content of the files that options and steps name, so that the run can be repeated without these files.
-Json files_of(const CheckedScenario& scenario) {
-  Json files = Json::object();
-  for (const auto& [option, curve] : scenario.curves) {
-    files[scenario.model + '.' + option] = {{"name", std::get<std::string>(scenario.options.at(option))},
-                                            {"text", curve.text}};
-  }
-  for (const auto& [name, text] : scenario.loading.files) files["loading." + name] = {{"name", name}, {"text", text}};
-  return files;
-}
-
 Json to_json(const Run& run) {
   const CheckedScenario& scenario = run.scenario;
   const RunRecord& record = run.record;
@@ -84,7 +73,7 @@ Json to_json(const Run& run) {
             {"digest", scenario_digest(scenario)},
             {"overrides", scenario.overrides},
             {"text", scenario.text},
-            {"files", files_of(scenario)}}}};
+            {"files", files_json(scenario)}}}};
 }
 
 /// States finite elements in the place of the law and its integrator.
@@ -110,6 +99,16 @@ void set_elements(Json& json, const RunElements& elements) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json files_json(const CheckedScenario& scenario) {
+  Json files = Json::object();
+  for (const auto& [option, curve] : scenario.curves) {
+    files[scenario.model + '.' + option] = {{"name", std::get<std::string>(scenario.options.at(option))},
+                                            {"text", curve.text}};
+  }
+  for (const auto& [name, text] : scenario.loading.files) files["loading." + name] = {{"name", name}, {"text", text}};
+  return files;
+}
 
 std::string run_json(const Run& run) {
   Json json = to_json(run);

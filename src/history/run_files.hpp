@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,9 @@ inline constexpr std::array<std::string_view, 2> k_run_tables{"history.csv", "ev
 /// repeated after their files have changed.
 /// @throws std::runtime_error if run.json is missing, too large, of a later format, or holds no scenario
 [[nodiscard]] CheckedScenario scenario_of_run(const std::filesystem::path& folder);
+
+/// Content of the files that options and steps of a scenario name, so that it can be repeated without these files.
+[[nodiscard]] nlohmann::ordered_json files_json(const CheckedScenario& scenario);
 
 /// Text of run.json.
 [[nodiscard]] std::string run_json(const Run& run);

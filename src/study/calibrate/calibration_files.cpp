@@ -8,6 +8,7 @@
 #include "catalogue.hpp"
 #include "figure/page.hpp"
 #include "history/run.hpp"
+#include "history/run_files.hpp"
 #include "scenario/edit.hpp"
 #include "scenario/file_keys.hpp"
 #include "scenario/text_file.hpp"
@@ -109,6 +110,9 @@ Json data_json(const Calibration& calibration) {
                     {"rows_left_out", curve.left_out.size()},
                     {"text", curve.text}});
     if (!curve.overrides.empty()) list.back()["set"] = curve.overrides;
+    if (!curve.machine.forces.empty()) {
+      list.back()["deflections"] = {{"force_N", curve.machine.forces}, {"deflection_m", curve.machine.deflections}};
+    }
   }
   return list.size() == 1 ? list.front() : list;
 }
@@ -162,7 +166,8 @@ Json fit_json(const Calibration& calibration, const CalibrationResult& result) {
 Json to_json(const Calibration& calibration, const CalibrationResult& result) {
   const Uncertainty& uncertainty = result.uncertainty;
   const std::size_t p = calibration.free.size();
-  return {{"calibration", calibration.name},
+  return {{"program", "monograin"},
+          {"calibration", calibration.name},
           {"title", calibration.title},
           {"parameters", parameters_json(calibration, result)},
           {"covariance", matrix_json(p,
@@ -185,12 +190,14 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
           {"fit", fit_json(calibration, result)},
           {"notes", result.notes},
           {"warnings", result.warnings},
+          {"citation", reference_texts(*find_model(calibration.scenario.model))},
           {"versions", {{"monograin", version()}, {"compiler", __VERSION__}}},
           {"scenario",
            {{"name", calibration.scenario.name},
             {"model", calibration.scenario.model},
             {"digest", scenario_digest(calibration.scenario)},
-            {"text", calibration.scenario_text}}},
+            {"text", calibration.scenario_text},
+            {"files", files_json(calibration.scenario)}}},
           {"data", data_json(calibration)},
           {"text", calibration.text}};
 }
@@ -247,8 +254,11 @@ std::string fitted_scenario_text(const Calibration& calibration, const Calibrati
     if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
     if (!parameter.is_of_machine()) edits.push_back({parameter.key.path, digits});
     const double half = result.uncertainty.half_width(k) / parameter.unit_factor;
+    const std::string accuracy = std::isfinite(half) ? fmt::format(" +- {}", with_unit(half, parameter.unit))
+                                 : result.uncertainty.is_determined[k] ? ""
+                                                                       : ", not determined by the data";
     head += fmt::format("#   {} = {}{}\n", parameter.key.path, with_unit(value / parameter.unit_factor, parameter.unit),
-                        std::isfinite(half) ? fmt::format(" +- {}", with_unit(half, parameter.unit)) : "");
+                        accuracy);
   }
   if (calibration.has_machine()) head += fmt::format("# {}\n", k_without_machine);
   for (const FittedFile& file : fitted_files(calibration)) edits.push_back({file.key.path, '"' + file.name + '"'});

@@ -144,31 +144,43 @@ void note_path(const Calibration& calibration, const MeasuredCurve& curve, const
   }
 }
 
-/// Notes the turn that the rows may have missed by most, if that changes y by more than its residuals.
+/// Notes the turn that the rows have missed by most, or may have, if that changes y by more than its residuals.
 void note_missed_turns(const Calibration& calibration, const CalibrationResult& result, const MeasuredCurve& curve,
                        const std::vector<double>& x, const std::vector<Turn>& turns, Notes& notes) {
   if (result.uncertainty.degrees_of_freedom == 0) return;
   const double deviation =
       std::sqrt(result.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom));
+  const bool has_noise = noise_in(x) > 0.0;  // rows then lie on both sides of the turn
   double largest = k_far_turn * deviation;
   std::string note;
   for (const Turn& turn : turns) {
     const std::size_t k = turn.last_row;
     const std::size_t row = curve.begin + k;
-    if (turn.is_known || k == 0 || k + 2 >= x.size()) continue;
+    if (k == 0 || k + 2 >= x.size() || (turn.is_known && has_noise)) continue;
     // Within the time between two rows x goes on at the speed before the turn and comes back at that after it.
     const double step_before = std::abs(x[k] - x[k - 1]);
     const double step_after = std::abs(x[k + 2] - x[k + 1]);
-    const double missed = step_before * step_after / (step_before + step_after);
+    const std::size_t extreme = std::abs(turn.x - x[k + 1]) < std::abs(turn.x - x[k]) ? k + 1 : k;
+    const double missed =
+        turn.is_known ? std::abs(turn.x - x[extreme]) : step_before * step_after / (step_before + step_after);
     const double slope = (calibration.y.values[row + 2] - calibration.y.values[row + 1]) / step_after;
     const double change = std::abs(missed * slope);
     if (!(result.weights[row] * change > largest)) continue;
     largest = result.weights[row] * change;
+    const std::size_t line = calibration.lines[curve.begin + extreme];
+    const std::string what =
+        turn.is_known ? fmt::format(
+                            "is taken to turn {:.2g} {} beyond line {}, where the equal steps of the rows before and "
+                            "after it meet if the rows are at equal times",
+                            missed, calibration.x.si, line)
+                      : fmt::format(
+                            "turns in line {}, or beside it by up to {:.2g} {}: the rows there have no equal steps, "
+                            "which would show where",
+                            line, missed, calibration.x.si);
     note = fmt::format(
-        "{} turns in line {}, or beside it by up to {:.2g} {}: the rows there have no equal steps, which would show "
-        "where. That changes {} by up to {:.2g} {}: record the turn, or rows at equal times",
-        calibration.x.observable, calibration.lines[row], missed, calibration.x.si, calibration.y.observable, change,
-        calibration.y.si);
+        "{} {}. That changes {} by up to {:.2g} {}: {}", calibration.x.observable, what, calibration.y.observable,
+        change, calibration.y.si,
+        turn.is_known ? "if it turned in this line, repeat the line" : "record the turn, or rows at equal times");
   }
   if (!note.empty()) notes.push_back(std::move(note));
 }

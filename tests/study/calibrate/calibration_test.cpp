@@ -243,6 +243,22 @@ TEST_F(CalibrationTest, SaysWhereUnevenRowsMayHaveMissedTheTurn) {
       << note(rows);
 }
 
+// Rows at equal times pass the turn between two rows; those of a machine that measures at chosen displacements do not.
+TEST_F(CalibrationTest, SaysWhereItTakesATurnBeyondTheRowsUnlessTheirLineIsRepeated) {
+  write("s.toml", k_mdr);
+  write("c.toml", k_two_free);
+  std::vector<Row> rows = measure(k_mdr, rows_beside_the_turn(50, 0.3));
+  const auto has_note = [&] {
+    write("d.csv", csv_of(rows, "axial.displacement[m],axial.force[N],w"));
+    return std::ranges::any_of(calibrate(read()).notes,
+                               [](const std::string& text) { return contains(text, "repeat the line"); });
+  };
+  EXPECT_TRUE(has_note());
+  const auto extreme = std::ranges::max_element(rows, {}, &Row::x);
+  rows.insert(extreme, *extreme);
+  EXPECT_FALSE(has_note());
+}
+
 TEST_F(CalibrationTest, NoiseInProportionToTheForceMakesItNeitherSmallerNorLarger) {
   // Forces a tenth too large and too small by turns. By the noise of each datum the small ones would count more: 68.6
   // GPa.
