@@ -18,7 +18,9 @@ function(monograin_library name)
   target_compile_features(${name} PUBLIC cxx_std_20)
   target_link_libraries(${name} PRIVATE ${dependencies})
   if(BUILD_SHARED_LIBS AND NOT MONOGRAIN_SANITIZE)
-    target_link_options(${name} PRIVATE -Wl,--no-undefined)
+    set(map "${PROJECT_SOURCE_DIR}/cmake/library.map")
+    target_link_options(${name} PRIVATE -Wl,--no-undefined "-Wl,--version-script=${map}")
+    set_target_properties(${name} PROPERTIES LINK_DEPENDS "${map}")
   endif()
   # The program of the same name stands in the build folder itself.
   set_target_properties(${name} PROPERTIES VERSION "${PROJECT_VERSION}"

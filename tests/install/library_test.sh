@@ -26,6 +26,11 @@ done
 (cd "$prefix/include" && find monograin/laws -name '*.hpp') | sed 's/.*/#include <&>/' > "$work/laws.cpp"
 g++ -std=c++20 -fsyntax-only -I"$prefix/include" -isystem /usr/include/eigen3 "$work/laws.cpp"
 
+# --- libraries show their own names only: a program may have Eigen with other options
+for library in $(find "$prefix" -name 'libmonograin*.so'); do
+  if nm -D --defined-only "$library" | grep -v 9monograin; then fail "$library shows names of others"; fi
+done
+
 # --- find_package
 cmake -S "$source/examples/cpp" -B "$work/examples" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Debug > /dev/null
 cmake --build "$work/examples" > "$work/log" || { cat "$work/log"; fail "the examples do not build"; }
