@@ -39,6 +39,9 @@ class PreparedScenario {
   /// @throws ScenarioError with all faults of the scenario, or with the keys that do not hold a number or stand twice
   /// @throws std::invalid_argument without keys
   PreparedScenario(const Scenario& scenario, std::vector<std::string> keys);
+  /// A prepared scenario that was moved from stays as it was.
+  PreparedScenario(const PreparedScenario&) = default;
+  PreparedScenario& operator=(const PreparedScenario&) = default;
 
   /// The keys that vary, in the order in which run() and map() take their values.
   [[nodiscard]] const std::vector<std::string>& keys() const noexcept;

@@ -27,6 +27,9 @@ struct RunOptions {
 class RunResult {
  public:
   explicit RunResult(std::shared_ptr<const Run> run);
+  /// A result that was moved from stays as it was.
+  RunResult(const RunResult&) = default;
+  RunResult& operator=(const RunResult&) = default;
 
   RunStatus status = RunStatus::complete;
   std::string message;                ///< why the run stopped or failed; empty if it is complete

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "api/checked.hpp"
+#include "api/untrapped.hpp"
 #include "continuum/continuum.hpp"
 #include "continuum/continuum_folder.hpp"
 #include "history/run.hpp"
@@ -12,6 +13,7 @@
 namespace monograin {
 
 ContinuumResult continuum(const RunResult& law, const ContinuumOptions& options) {
+  const Untrapped untrapped;
   if (options.keeps_files && options.folder.empty()) {
     throw std::invalid_argument("there is no folder for the files of CalculiX to keep");
   }
@@ -36,6 +38,7 @@ ContinuumResult continuum(const RunResult& law, const ContinuumOptions& options)
 }
 
 ContinuumResult continuum(const Scenario& scenario, const ContinuumOptions& options) {
+  const Untrapped untrapped;
   const CheckedScenario sound = checked(scenario);
   static_cast<void>(continuum_material_of(sound));
   return continuum(RunResult(std::make_shared<const Run>(run_scenario(sound, interruptible(options.stop)))), options);

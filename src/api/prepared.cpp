@@ -9,10 +9,12 @@
 #include <stdexcept>
 
 #include "api/checked.hpp"
+#include "api/untrapped.hpp"
 #include "history/recorder.hpp"
 #include "history/run.hpp"
 #include "numerics/parallel.hpp"
 #include "scenario/faults.hpp"
+#include "scenario/file_keys.hpp"
 #include "scenario/words.hpp"
 #include "scene/scene.hpp"
 #include "study/formula/expression.hpp"
@@ -159,9 +161,12 @@ struct PreparedScenario::Content {
 };
 
 PreparedScenario::PreparedScenario(const Scenario& scenario, std::vector<std::string> keys) {
+  const Untrapped untrapped;
   if (keys.empty()) throw std::invalid_argument("keys: expected at least one");
   const CheckedScenario all_right = checked(scenario);
-  ScenarioTemplate prepared({.text = all_right.text, .origin = scenario.origin(), .files = scenario.files()},
+  FileTexts files;  // later runs do not depend on what becomes of them
+  for (FileKey& key : file_keys(all_right)) files.emplace(std::move(key.name), std::move(key.text));
+  ScenarioTemplate prepared({.text = all_right.text, .origin = scenario.origin(), .files = std::move(files)},
                             all_right.overrides);
   FaultList faults;
   for (auto key = keys.begin(); key != keys.end(); ++key) {
@@ -178,6 +183,7 @@ PreparedScenario::PreparedScenario(const Scenario& scenario, std::vector<std::st
 const std::vector<std::string>& PreparedScenario::keys() const noexcept { return content_->keys; }
 
 RunResult PreparedScenario::run(std::span<const double> values, const RunOptions& options) const {
+  const Untrapped untrapped;
   if (values.size() != keys().size()) {
     throw std::invalid_argument(
         fmt::format("{} values for {} keys; expected one for each", values.size(), keys().size()));
@@ -187,6 +193,7 @@ RunResult PreparedScenario::run(std::span<const double> values, const RunOptions
 
 MapResult PreparedScenario::map(std::span<const double> samples, std::span<const std::string> formulas,
                                 const MapOptions& options) const {
+  const Untrapped untrapped;
   const std::size_t width = keys().size();
   if (samples.size() % width != 0) {
     throw std::invalid_argument(fmt::format("{} values are no rows of {}", samples.size(), width));

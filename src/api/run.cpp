@@ -5,6 +5,7 @@
 #include <string>
 
 #include "api/checked.hpp"
+#include "api/untrapped.hpp"
 #include "exchange/force_table.hpp"
 #include "exchange/lammps.hpp"
 #include "exchange/vtk.hpp"
@@ -41,11 +42,13 @@ void RunResult::save(const std::filesystem::path& folder) const {
 }
 
 History RunResult::profile(double time, const RunOptions& options) const {
+  const Untrapped untrapped;
   if (run_->elements) throw std::runtime_error("finite elements have no profile; the run of the law may have one");
   return history_of(contact_profiles(run_->scenario, time, interruptible(options.stop)));
 }
 
 void RunResult::write_vtk(const std::filesystem::path& folder) const {
+  const Untrapped untrapped;
   save_vtk(run_->scenario, run_->record.history, folder);
 }
 
@@ -60,6 +63,7 @@ History RunResult::force_table(const std::string& contact_class) const {
 }
 
 RunResult run(const Scenario& scenario, const RunOptions& options) {
+  const Untrapped untrapped;
   return RunResult(std::make_shared<const Run>(run_scenario(checked(scenario), interruptible(options.stop))));
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "api/checked.hpp"
+#include "api/untrapped.hpp"
 #include "scenario/document.hpp"
 #include "scenario/faults.hpp"
 #include "scenario/overrides.hpp"
@@ -84,6 +85,7 @@ Scenario& Scenario::set(std::string_view key, std::span<const std::string> texts
 }
 
 std::vector<Fault> Scenario::validate() const {
+  const Untrapped untrapped;
   try {
     // make_scene() checks walls and their programs.
     static_cast<void>(make_scene(checked(*this)));
@@ -94,6 +96,7 @@ std::vector<Fault> Scenario::validate() const {
 }
 
 std::vector<Parameter> Scenario::parameters() const {
+  const Untrapped untrapped;
   std::vector<Parameter> parameters;
   for (const DerivedParameter& parameter : derived_parameters(checked(*this))) {
     parameters.push_back({std::string(parameter.name), parameter.value, std::string(parameter.unit)});

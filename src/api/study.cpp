@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "api/checked.hpp"
+#include "api/untrapped.hpp"
 #include "history/staged_folder.hpp"
 #include "history/table_file.hpp"
 #include "monograin/status.hpp"
@@ -80,12 +81,14 @@ PlanResult run_plan(const Sweep& plan, const SweepOptions& options) {
              .progress = [&](std::size_t, std::size_t) { end_if_asked(options.stop); },
              .format = results_format(options.format)});
   result.missing = outcome.runs_missing;
+  if (!outcome.warning.empty()) result.warnings.push_back(outcome.warning);
   return {.result = std::move(result), .table = std::move(outcome.results)};
 }
 
 }  // namespace
 
 SweepResult sweep(const Source& source, const SweepOptions& options) {
+  const Untrapped untrapped;
   const Sweep plan = plan_of(source);
   PlanResult done = run_plan(plan, options);
   SweepResult& result = done.result;
@@ -96,6 +99,7 @@ SweepResult sweep(const Source& source, const SweepOptions& options) {
 }
 
 SensitivityResult sensitivity(const Source& source, const SweepOptions& options, double confidence) {
+  const Untrapped untrapped;
   check_confidence(confidence);
   if (options.shard_count != 1) throw std::invalid_argument("shard: sensitivities take all runs of a sweep");
   const Sweep plan = plan_of(source);
@@ -106,7 +110,7 @@ SensitivityResult sensitivity(const Source& source, const SweepOptions& options,
   const std::string no_figure = write_sensitivities(plan, found, folder);
   SensitivityResult result{.folder = folder,
                            .table = history_of(read_csv(folder / k_sensitivities_file)),
-                           .warnings = plan.doubts,
+                           .warnings = swept.warnings,
                            .no_figure = no_figure};
   for (const ResultSensitivity& one : found) {
     result.warnings.insert(result.warnings.end(), one.warnings.begin(), one.warnings.end());
@@ -115,6 +119,7 @@ SensitivityResult sensitivity(const Source& source, const SweepOptions& options,
 }
 
 CalibrationResult calibrate(const Source& source, const Options& options, std::optional<double> confidence) {
+  const Untrapped untrapped;
   if (confidence) check_confidence(*confidence);
   Calibration calibration = parse_calibration(text_of(source, "a calibration file"), source.data);
   calibration.confidence = confidence.value_or(calibration.confidence);
@@ -149,6 +154,7 @@ CalibrationResult calibrate(const Source& source, const Options& options, std::o
 }
 
 DataResult read_data(const fs::path& file, const std::string& x, const std::string& y) {
+  const Untrapped untrapped;
   DataChoice choice{.x = x, .y = y};
   choice.x_named = "x =";
   choice.y_named = "y =";
@@ -165,6 +171,7 @@ DataResult read_data(const fs::path& file, const std::string& x, const std::stri
 }
 
 DesignResult design(const Source& source, const Options& options) {
+  const Untrapped untrapped;
   const ExperimentPlan plan = parse_experiment_plan(text_without_data(source, "a plan of an experiment"));
   std::optional<StagedFolder> staged;
   if (!options.folder.empty()) staged.emplace(options.folder, k_identify_marker);

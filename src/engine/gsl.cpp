@@ -12,6 +12,7 @@
 
 #include "engine/c_library.hpp"
 #include "engine/stepper.hpp"
+#include "numerics/quiet_gsl.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin {
@@ -253,6 +254,7 @@ class GslStepper final : public Stepper {
     }));
   }
 
+  QuietGsl quiet_{};  // every return value is checked
   ScaledForm& form_;
   DifferenceJacobian jacobian_;
   gsl_odeiv2_system system_;
@@ -270,8 +272,6 @@ class GslStepper final : public Stepper {
 }  // namespace
 
 std::unique_ptr<Stepper> make_gsl(GslMethod method, ScaledForm& form, const Tolerances& tolerances) {
-  // Every return value is checked; the library's own handler would end the program.
-  [[maybe_unused]] static auto* const before = gsl_set_error_handler_off();
   return std::make_unique<GslStepper>(method, form, tolerances);
 }
 

@@ -72,7 +72,11 @@ class Child {
     const pid_t ended = waitpid(process_, &status, waits ? 0 : WNOHANG);
     if (ended == 0 || (ended < 0 && errno == EINTR)) return std::nullopt;
     process_ = 0;
-    if (ended < 0) throw std::runtime_error(fmt::format("a program is lost: {}", std::strerror(errno)));
+    if (ended < 0) {
+      throw std::runtime_error(
+          "cannot tell how a program that was started has ended: this process ignores SIGCHLD, or waits for it "
+          "elsewhere");
+    }
     return status;
   }
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "numerics/descent.hpp"
+#include "numerics/quiet_gsl.hpp"
 #include "numerics/search_box.hpp"
 
 namespace monograin {
@@ -29,18 +30,6 @@ constexpr double k_same_cost = 1e-9;           // relative difference of equal c
 constexpr double k_scan_share = 0.5;           // share of the draw in the progress of the search
 
 using Bound = LeastSquaresSolution::Bound;
-
-/// Keeps GSL from ending the process at an error.
-class QuietGsl {
- public:
-  QuietGsl() : before_(gsl_set_error_handler_off()) {}
-  ~QuietGsl() { gsl_set_error_handler(before_); }
-  QuietGsl(const QuietGsl&) = delete;
-  QuietGsl& operator=(const QuietGsl&) = delete;
-
- private:
-  gsl_error_handler_t* before_;
-};
 
 void check_size(const LeastSquaresProblem& problem) {
   if (problem.parameters.empty() || problem.parameters.size() > k_most_parameters) {

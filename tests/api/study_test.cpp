@@ -157,15 +157,17 @@ TEST(Study, RefusesASourceThatIsEmptyOrHasDataThatItDoesNotUse) {
 TEST(StudySweep, CountsThePointsOutsideOfItsConstraintsAndWarnsOfNumbersWithoutUnits) {
   const TemporaryFolder folder;
   const SweepResult doubtful = sweep(yield_stresses("[\"40 MPa\", 50]"), {.folder = folder.path() / "doubtful"});
-  ASSERT_EQ(doubtful.warnings.size(), 1U);
+  ASSERT_EQ(doubtful.warnings.size(), 2U);
   EXPECT_NE(doubtful.warnings[0].find("yield_stress"), std::string::npos) << doubtful.warnings[0];
+  EXPECT_TRUE(doubtful.warnings[1].starts_with("1 of 2 runs warn; run 2: ")) << doubtful.warnings[1];
   Source source = yield_stresses("[30e6, 40e6, 50e6]");
   *source.text += "\"material.youngs_modulus\" = { values = [1e9, 45e6] }\n";
   source.text->insert(0, "constraints = [\"material.youngs_modulus > material.yield_stress\"]\n");
   const SweepResult found = sweep(source, {.folder = folder.path() / "s"});
   EXPECT_EQ(found.left_out, 1U);
   EXPECT_EQ(found.results.row_count(), 5U);
-  EXPECT_TRUE(found.warnings.empty());
+  ASSERT_EQ(found.warnings.size(), 1U) << "E/Y of 1.5 and less, but no number without a unit";
+  EXPECT_TRUE(found.warnings[0].starts_with("2 of 5 runs warn; run 2: ")) << found.warnings[0];
   EXPECT_EQ(found.no_figure, "");
 }
 
