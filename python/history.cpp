@@ -99,7 +99,13 @@ void add_history(py::module_& module) {
       .def("values", &values_of)
       .def("labels", [](const History& history, const std::string& name) { return column_of(history, name).labels; });
   module.def("table_of", &table_of);
-  module.def("read_csv", [](const std::string& file) { return history_of(read_csv(file)); });
+  module.def("read_csv", [](const std::string& file) {
+    Table table = [&] {
+      const Unlocked unlocked;
+      return read_csv(file);
+    }();
+    return history_of(std::move(table));
+  });
   module.def("read_hdf5", [](const std::string& file) { return history_of(read_hdf5(file)); });
 }
 
