@@ -18,9 +18,7 @@ namespace monograin {
 namespace {
 
 constexpr int k_refinements = 3;
-constexpr double k_small_step = 1e-4;  // a Gauss-Newton step longer than this in z shows that no minimum is near
 constexpr double k_round_off_of_cost = 1e-12;  // over the cost
-constexpr double k_exact_step = 1e-12;         // Gauss-Newton step in z that ends the descent
 constexpr double k_nearly_exact = 1e-9;        // step in z below which a minimum has converged
 constexpr double k_kinked = 1e-5;              // fall of the cost predicted at a smooth minimum, over the cost, at most
 constexpr double k_margin_of_noise = 1e3;
@@ -134,14 +132,13 @@ Place refined(SearchBox& box, Place place) {
   for (int round = 0; round < k_refinements && box.evaluate(place, values); ++round) {
     const Eigen::MatrixXd jacobian = box.derivatives(place, values, true);
     const Eigen::VectorXd step = jacobian.completeOrthogonalDecomposition().solve(-map_of(values));
-    if (!(step.norm() <= k_small_step)) break;
     Place next = place;
     for (std::size_t k = 0; k < box.size(); ++k) next.z[k] = folded(place.z[k] + step[static_cast<Eigen::Index>(k)]);
     next.cost = box.cost_at(next);
     if (!(next.cost <= place.cost * (1.0 + k_round_off_of_cost))) break;
     place = std::move(next);
-    if (step.norm() <= nearly_exact(box)) place.has_converged = true;
-    if (step.norm() <= k_exact_step) break;
+    place.has_converged = step.norm() <= nearly_exact(box);
+    if (place.has_converged) break;
   }
   return place;
 }
@@ -210,9 +207,7 @@ Place descend(SearchBox& box, const Place& start, const Effort& effort, std::spa
   for (const double value : values_of(*gsl_multifit_nlinear_position(solver.get()))) end.z.push_back(folded(value));
   const double norm = gsl_blas_dnrm2(gsl_multifit_nlinear_residual(solver.get()));
   end.cost = norm * norm;
-  if (!(end.cost <= start.cost)) end = start;
-  // GSL reports no progress if no step, however short, lowers the cost.
-  end.has_converged = has_converged || status == GSL_ENOPROG;
+  end.has_converged = has_converged;
   return end;
 }
 
@@ -220,7 +215,7 @@ Place descend_to_round_off(SearchBox& box, Place place) {
   place.has_converged = false;
   place = refined(box, std::move(place));
   if (place.has_converged) return place;
-  return refined(box, descend(box, place, {.iterations = 100, .step = nearly_exact(box), .is_central = true}));
+  return descend(box, place, {.iterations = 100, .step = nearly_exact(box), .is_central = true});
 }
 
 Place descend_over_kinks(SearchBox& box, const Place& place) {
