@@ -104,7 +104,6 @@ class Profile {
     for (int count = 0;; ++count) {  // outwards
       const double value = step >= range ? bound : best + (is_above ? step : -step);
       outer = refit(k, moved(inner, k, value));
-      if (better_) return value;
       if (outer.rise >= t * t) break;
       if (value == bound || count == k_most_steps) return value;
       inner = outer;
@@ -116,11 +115,8 @@ class Profile {
     double low = excess(inner);
     double high = std::min(excess(outer), k_far * t);
     for (int count = 0; count < k_most_steps; ++count) {
-      if (std::abs(outer.value - inner.value) <= k_end * std::abs(outer.value - best)) break;
-      double share = std::clamp(low / (low - high), 0.02, 0.98);
-      if (!std::isfinite(outer.rise)) share = 0.5;
+      const double share = low / (low - high);
       const Point point = refit(k, moved(inner, k, std::lerp(inner.value, outer.value, share)));
-      if (better_) return point.value;
       const double found = excess(point);
       if (std::abs(found) <= k_end * t) return point.value;
       if (found < 0.0) {
@@ -146,7 +142,7 @@ class Profile {
   [[nodiscard]] double rise_of(double cost) const { return (cost - solution_.cost) / uncertainty_.rise; }
 
   void keep_better(std::vector<double> parameters, double rise) {
-    if (!(rise < -k_less) || !is_inside(parameters)) return;
+    if (!(rise < -k_less)) return;
     const double cost = solution_.cost + rise * uncertainty_.rise;
     if (!better_ || cost < better_->cost) better_ = LocalMinimum{std::move(parameters), cost};
   }
@@ -195,18 +191,11 @@ void extend(Profile& profile, const LeastSquaresSolution& solution, const LocalM
   for (std::size_t k = 0; k < intervals.size() && !profile.better(); ++k) {
     if (!uncertainty.is_determined[k] || !is_low(solution, minimum, uncertainty, k)) continue;
     Interval& interval = intervals[k];
-    // Towards the interval, the first profile has gone that way already.
-    const bool is_below = minimum.parameters[k] < interval.lower;
-    const bool is_above = minimum.parameters[k] > interval.upper;
     bool is_cut = false;
-    if (!is_above) {
-      const double lower = profile.end(k, false, is_cut);
-      if (lower < interval.lower) std::tie(interval.lower, interval.is_cut_below) = std::pair(lower, is_cut);
-    }
-    if (!is_below && !profile.better()) {
-      const double upper = profile.end(k, true, is_cut);
-      if (upper > interval.upper) std::tie(interval.upper, interval.is_cut_above) = std::pair(upper, is_cut);
-    }
+    const double lower = profile.end(k, false, is_cut);
+    if (lower < interval.lower) std::tie(interval.lower, interval.is_cut_below) = std::pair(lower, is_cut);
+    const double upper = profile.end(k, true, is_cut);
+    if (upper > interval.upper) std::tie(interval.upper, interval.is_cut_above) = std::pair(upper, is_cut);
   }
 }
 
@@ -272,7 +261,7 @@ ProfileIntervals profile_intervals(const LeastSquaresProblem& problem, const Lea
     Interval interval{.lower = k_none, .upper = k_none};
     if (has_size && uncertainty.is_determined[k]) {
       interval.lower = profile.end(k, false, interval.is_cut_below);
-      if (!profile.better()) interval.upper = profile.end(k, true, interval.is_cut_above);
+      interval.upper = profile.end(k, true, interval.is_cut_above);
     }
     result.intervals.push_back(interval);
   }
