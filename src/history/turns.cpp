@@ -172,15 +172,12 @@ class WindowOfRows {
 };
 
 // Lines beside a turn in noise.
-constexpr double k_turn_reach = 30.0;    // path beside a turn that shows where it is, over the noise
-constexpr int k_reaches = 3;             // number of windows, each of half the reach of the one before
-constexpr double k_bad_lines = 2.0;      // mean squared distance from lines beside a turn that are not straight
-constexpr std::size_t k_turn_rows = 10;  // by which the row of the turn may be off
+constexpr double k_turn_reach = 30.0;  // path beside a turn that shows where it is, over the noise
+constexpr int k_reaches = 3;           // number of windows, each of half the reach of the one before
+constexpr double k_bad_lines = 2.0;    // mean squared distance from lines beside a turn that are not straight
 
 // Holds.
 constexpr std::size_t k_least_hold = 5;  // rows
-constexpr double k_near_extreme = 8.0;   // reach of a hold's rows from the extreme one, over the noise
-constexpr int k_hold_rounds = 20;        // of the search for the ends of a hold
 constexpr double k_better_hold = 20.0;   // least F of the fit with a hold against that by two lines
 constexpr double k_below_extreme = 2.0;  // distance of a hold from the extreme x beyond its rows' own, over the noise
 constexpr double k_level = 2.5;          // largest slope of a hold, over its standard error
@@ -208,15 +205,13 @@ struct MeetingLines {
   double squares = k_infinity;  ///< sum of the squared distances of all rows of the window
 };
 
-/// Intersection of the two straight lines that fit the rows before and after a turn best. Every row next to the turn is
-/// tried as the last one of the first line.
-[[nodiscard]] MeetingLines meeting_lines(std::span<const double> x, const WindowOfRows& window, std::size_t turn) {
+/// Intersection of the two straight lines that fit the rows of a window best. Every row is tried as the last one of the
+/// first line.
+[[nodiscard]] MeetingLines meeting_lines(const WindowOfRows& window) {
   const std::size_t first = window.first();
   const std::size_t last = window.last();
-  const std::size_t lowest = std::max(first + 1, turn - std::min(turn, k_turn_rows));
-  const std::size_t highest = std::min(last - 2, turn + k_turn_rows);
-  MeetingLines best{.x = x[turn]};
-  for (std::size_t middle = lowest; middle <= highest; ++middle) {
+  MeetingLines best;
+  for (std::size_t middle = first + 1; middle + 1 < last; ++middle) {
     const Line before = window.line(first, middle + 1);
     const Line after = window.line(middle + 1, last + 1);
     if (!(before.squares + after.squares < best.squares)) continue;
@@ -224,9 +219,7 @@ struct MeetingLines {
     const double row = (after.at(0.0) - before.at(0.0)) / (before.slope - after.slope);
     const bool meet = row >= static_cast<double>(first) && row <= static_cast<double>(last);
     const double at = meet ? row : static_cast<double>(middle);
-    const double x_there = 0.5 * (before.at(at) + after.at(at));
-    // Lines beside a hold below the peak meet beyond it, but x has not been farther than the turn.
-    best.x = x[turn] > x[first] ? std::min(x_there, x[turn]) : std::max(x_there, x[turn]);
+    best.x = 0.5 * (before.at(at) + after.at(at));
   }
   return best;
 }
@@ -240,15 +233,16 @@ struct Hold {
   [[nodiscard]] std::size_t rows() const noexcept { return end - begin; }
 };
 
-/// Hold between two lines of at least three rows that fits the rows of a window best, near given ends.
-[[nodiscard]] Hold hold_near(const WindowOfRows& window, std::size_t begin, std::size_t end) {
-  Hold hold{std::max(begin, window.first() + k_least_line), std::min(end, window.last() + 1 - k_least_line)};
+/// Hold between two lines of at least three rows that fits the rows of a window best. Its two ends are moved in turns.
+[[nodiscard]] Hold best_hold(const WindowOfRows& window) {
+  Hold hold{window.first() + k_least_line, window.last() + 1 - k_least_line};
   if (hold.end < hold.begin + k_least_hold) return {};
   const auto squares = [&window](std::size_t from, std::size_t to) {
     return window.line(window.first(), from).squares + window.line(from, to).variation +
            window.line(to, window.last() + 1).squares;
   };
-  for (int round = 0; round < k_hold_rounds; ++round) {
+  bool is_better = true;
+  while (is_better) {
     const double before = hold.squares;
     for (std::size_t from = window.first() + k_least_line; from + k_least_hold <= hold.end; ++from) {
       if (const double sum = squares(from, hold.end); sum < hold.squares) hold = {from, hold.end, sum};
@@ -256,38 +250,27 @@ struct Hold {
     for (std::size_t to = hold.begin + k_least_hold; to + k_least_line <= window.last() + 1; ++to) {
       if (const double sum = squares(hold.begin, to); sum < hold.squares) hold = {hold.begin, to, sum};
     }
-    if (!(hold.squares < before)) break;
+    is_better = hold.squares < before;
   }
   return hold;
 }
 
-/// True if a hold is level and lies at the extreme x, within the scatter of its rows.
+/// True if a hold is level and lies at the extreme x, within the noise of its rows.
 [[nodiscard]] bool is_at_turn(std::span<const double> x, const WindowOfRows& window, const Hold& hold, std::size_t turn,
                               double noise) {
   const Line line = window.line(hold.begin, hold.end);
   const auto rows = static_cast<double>(hold.rows());
-  const double scatter = std::max(noise, std::sqrt(line.squares / (rows - 2.0)));
   // The largest of n normal values is expected below this.
   const double largest = std::sqrt(2.0 * std::log(rows));
-  if (std::abs(x[turn] - line.x) > (largest + k_below_extreme) * scatter) return false;
-  return std::abs(line.slope) <= k_level * scatter / std::sqrt(rows * (rows * rows - 1.0) / 12.0);
+  if (std::abs(x[turn] - line.x) > (largest + k_below_extreme) * noise) return false;
+  return std::abs(line.slope) <= k_level * noise / std::sqrt(rows * (rows * rows - 1.0) / 12.0);
 }
 
-/// Hold at a turn in noise; without rows if x is not held there.
-[[nodiscard]] Hold hold_at(std::span<const double> x, const WindowOfRows& window, std::size_t turn, double noise) {
-  const auto is_near = [&](std::size_t row) { return std::abs(x[row] - x[turn]) <= k_near_extreme * noise; };
-  std::size_t begin = turn;
-  std::size_t end = turn + 1;
-  while (begin > window.first() && is_near(begin - 1)) --begin;
-  while (end <= window.last() && is_near(end)) ++end;
-  const Hold hold = hold_near(window, begin, end);
+/// Hold at a turn in noise; without rows if x is not held there. @param by_lines  squares of the fit without a hold
+[[nodiscard]] Hold hold_at(std::span<const double> x, const WindowOfRows& window, std::size_t turn, double noise,
+                           double by_lines) {
+  const Hold hold = best_hold(window);
   if (hold.rows() == 0 || !is_at_turn(x, window, hold, turn, noise)) return {};
-  double by_lines = k_infinity;
-  for (std::size_t middle = window.first() + 1; middle + 1 < window.last(); ++middle) {
-    const double sum =
-        window.line(window.first(), middle + 1).squares + window.line(middle + 1, window.last() + 1).squares;
-    by_lines = std::min(by_lines, sum);
-  }
   const auto rows = static_cast<double>(window.last() + 1 - window.first());
   const double variance = std::max(hold.squares / rows, noise * noise);
   return by_lines - hold.squares > k_better_hold * variance ? hold : Hold{};
@@ -304,14 +287,14 @@ struct Hold {
     const std::size_t last = row_beside(x, extreme, 1, end, reach);
     if (last - first < 2 * k_least_line) break;
     const WindowOfRows window(x, first, last);
-    if (const Hold hold = hold_at(x, window, extreme, noise); hold.rows() > 0) {
+    const MeetingLines lines = meeting_lines(window);
+    if (const Hold hold = hold_at(x, window, extreme, noise, lines.squares); hold.rows() > 0) {
       return {.last_row = hold.end - 1,
               .x = window.line(hold.begin, hold.end).x,
               .is_known = true,
               .held_begin = hold.begin,
               .held_end = hold.end};
     }
-    const MeetingLines lines = meeting_lines(x, window, extreme);
     turn.x = lines.x;
     if (lines.squares <= k_bad_lines * noise * noise * static_cast<double>(last + 1 - first)) break;
   }
@@ -375,9 +358,8 @@ struct PlaceOfTurn {
   const auto place = place_between_rows(x, begin, extreme, end);
   turn.is_known = place.has_value();
   if (!place || place->row == static_cast<double>(extreme)) return turn;
-  const double there = line_through(x, place->last_row + 1 - k_least_line, place->last_row).at(place->row);
-  return {.last_row = place->last_row,
-          .x = x[extreme] > x[begin] ? std::max(there, x[extreme]) : std::min(there, x[extreme])};
+  const Line before = line_through(x, place->last_row + 1 - k_least_line, place->last_row);
+  return {.last_row = place->last_row, .x = before.at(place->row)};
 }
 
 }  // namespace
