@@ -9,8 +9,6 @@
 namespace monograin {
 namespace {
 
-constexpr double k_finest_share = 1e-2;  // step of a second pair of runs over that of the first one
-
 constexpr std::array<double, 2> k_at_no_distance{k_infinity, k_infinity};  // no event comes to the instant of the row
 
 /// Truncation of a central difference next to a singularity.
@@ -148,14 +146,12 @@ void Differences::find_kink(const RunPair& run_pair) {
 double Differences::kink_in(std::size_t column, const Partnership& other, double other_step) const {
   constexpr double k_sharp = 1e-2;     // difference of the sides, over the largest derivative
   constexpr double k_change = 0.3;     // of the difference in the other pair, over that in the first one
-  constexpr double k_clear = 5.0;      // difference in the other pair, over its round-off
   constexpr std::size_t k_least = 10;  // rows, of which one shows the kink
   const auto difference = [&](const Partnership& in, std::size_t row, double step) {
     const auto values = in.at_row(row, column);
     return values ? values->second_difference() / step : k_nan;
   };
-  const auto round_off = [&](double step) { return noise_ * magnitudes_[column].value / step; };
-  const double least = k_sharp * magnitudes_[column].derivative + round_off(step());
+  const double least = k_sharp * magnitudes_[column].derivative + noise_ * magnitudes_[column].value / step();
   std::size_t rows = 0;
   std::size_t sharp_rows = 0;
   double largest = 0.0;
@@ -165,7 +161,7 @@ double Differences::kink_in(std::size_t column, const Partnership& other, double
     const double here = difference(other, row, other_step);
     if (std::isnan(first) || std::isnan(here)) continue;
     ++rows;
-    const bool is_kept = std::abs(here - first) <= k_change * first && here > k_clear * round_off(other_step);
+    const bool is_kept = std::abs(here - first) <= k_change * first;
     if (!is_kept || first <= least) continue;
     ++sharp_rows;
     largest = std::max(largest, first);
@@ -192,25 +188,24 @@ void Differences::refine(const RunPair& run_pair) {
   }
   if (share == 1.0) return;
   const std::vector<double> instants = base_.output_instants([&](std::size_t row) { return is_coarse[row]; });
-  add_pair(run_pair, std::max(share, k_finest_share) * step(), instants);
+  add_pair(run_pair, share * step(), instants);
 }
 
 Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, double step, bool is_at_event,
                                const Distances& distances) const {
   constexpr double k_as_large = 1e-3;  // second difference that is round-off, over the largest value
   constexpr double k_counts = 1e-6;    // half a bend that matters, over the largest derivative of the column
-  constexpr double k_large = 0.1;      // derivative, over the largest one of the column
   constexpr double k_smooth = 5e-5;    // bend of a smooth curve at most, over the largest derivative of the column
   Quotient result{(of.upper - of.lower) / (2.0 * step), 0.0, noise_ * magnitudes.value / step};
   const double size = magnitudes.derivative;
   const double slope = std::abs(result.value);
   const double bend = of.second_difference() / step;
   const bool is_round_off = is_at_event && of.second_difference() > k_as_large * of.largest();
-  if (is_round_off && size > 0.0 && 0.5 * bend > k_counts * size) return {k_nan, 0.0, 0.0};
+  if (is_round_off && 0.5 * bend > k_counts * size) return {k_nan, 0.0, 0.0};
   result.truncation = step / value_ * bend / 6.0;
   if (kink_ > 0.0) {
     result.truncation = std::max(result.truncation, 0.5 * bend);
-  } else if (bend > result.round_off) {
+  } else {
     PowerTruncation of_power;
     for (const double distance : distances) {
       const PowerTruncation here =
@@ -218,8 +213,7 @@ Quotient Differences::quotient(const Triple& of, const Magnitudes& magnitudes, d
       if (here.error < of_power.error) of_power = here;
     }
     result.value -= of_power.value;
-    const bool is_bent = slope > k_large * size || bend > k_smooth * size;
-    const double elsewhere = is_bent ? 0.5 * bend * std::min(1.0, bend / slope) : k_infinity;
+    const double elsewhere = bend > k_smooth * size ? 0.5 * bend * std::min(1.0, bend / slope) : k_infinity;
     const double error = std::min(of_power.error, elsewhere);
     if (std::isfinite(error)) result.truncation = std::max(result.truncation, error);
   }

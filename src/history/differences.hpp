@@ -84,8 +84,8 @@ class Differences {
   /// step.
   void find_kink(const RunPair& run_pair);
   /// Largest difference of a column's derivatives on the two sides of the key's value, over the largest derivative. 0
-  /// unless at least one output row in ten has a difference above 1 % that stays within 30 % in another pair of runs
-  /// and is clear of its round-off.
+  /// unless at least one output row in ten has a difference above 1 % and its round-off that stays within 30 % in
+  /// another pair of runs.
   /// @param other       another pair, which may have fewer rows
   /// @param other_step  its step
   [[nodiscard]] double kink_in(std::size_t column, const Partnership& other, double other_step) const;
@@ -97,8 +97,8 @@ class Differences {
   /// - f''' = f''/p in a smooth curve,
   /// - f''' = (n - 2) f''/x where the bend shows that the curve is a power n of the distance x from an event; this
   ///   truncation is subtracted,
-  /// - f''' = 3 f''^2/f', as next to another square root, where the derivative is large or the bend exceeds that of a
-  ///   smooth curve. The error is f'' h/2 at most: half the difference of the two sides of a kink within the step.
+  /// - f''' = 3 f''^2/f', as next to another square root, where the bend exceeds that of a smooth curve. The error is
+  ///   f'' h/2 at most: half the difference of the two sides of a kink within the step.
   ///
   /// In a row at an event, a column may be nothing but round-off; its values then differ as much as they are large, and
   /// it has no derivative.
