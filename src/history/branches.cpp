@@ -10,8 +10,7 @@ namespace {
 
 constexpr double k_slope_share = 0.05;    ///< fall of the force that gives the slope, over the force at the reversal
 constexpr double k_same_reversal = 0.01;  ///< largest distance of equal reversals, over their x
-constexpr double k_worth_a_line = 1.0 + 1e-3;  ///< least end of loading with a line, over x of the last reversal
-constexpr double k_same_end = 1e-6;            ///< largest distance beyond the end of a piece that has a value, over x
+constexpr double k_same_end = 1e-6;       ///< largest distance beyond the end of a piece that has a value, over x
 
 [[nodiscard]] XyCurve up_to(const XyCurve& loading, double x) {
   const auto end = std::ranges::upper_bound(loading.x, x);
@@ -166,7 +165,7 @@ std::vector<BranchComparison> compare_branches(const XyCurve& reference, const X
     lines.push_back(line);
   }
   const bool goes_on =
-      !loading.x.empty() && (lines.empty() || loading.x.back() > k_worth_a_line * lines.back().reversal);
+      !loading.x.empty() && (lines.empty() || loading.x.back() > (1.0 + k_same_reversal) * lines.back().reversal);
   if (goes_on) {
     lines.push_back({.reversal = loading.x.back(),
                      .slope = k_nan,
