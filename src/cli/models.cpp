@@ -121,7 +121,7 @@ void print_model(const Model& model) {
 /// Prints the constants derived from a scenario's material and particle.
 void print_parameters(const CheckedScenario& scenario) {
   for (const auto& [name, value, unit, symbol] : derived_parameters(scenario)) {
-    print_data("{:<28}{} {}{}\n", name, value, unit, symbol.empty() ? "" : fmt::format("  {}", symbol));
+    print_data("{:<27} {} {}{}\n", name, value, unit, symbol.empty() ? "" : fmt::format("  {}", symbol));
   }
 }
 

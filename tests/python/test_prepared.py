@@ -338,6 +338,7 @@ def test_an_interrupt_stops_map_and_keeps_what_is_there(tmp_path):
     assert seconds < 10.0
 
 
+@pytest.mark.filterwarnings("ignore:.* runs warn:RuntimeWarning")
 def test_an_interrupted_sweep_goes_on_where_it_was(tmp_path):
     (tmp_path / "die.toml").write_text(mg.scenario("die").text)
     (tmp_path / "long.toml").write_text(

@@ -17,6 +17,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import monograin as mg
 
 
+@pytest.mark.filterwarnings("ignore:.* runs warn:RuntimeWarning")
 def test_a_sweep_has_the_table_of_the_program(run_program, tmp_path):
     file = mg.scenario_folder() / "sweeps" / "poisson.toml"
     table = mg.sweep(file, tmp_path / "ours")
@@ -162,6 +163,7 @@ def test_shards_merge_into_the_same_table(tmp_path):
         mg.sweep(file, tmp_path / "parts", shard=(3, 2))
 
 
+@pytest.mark.filterwarnings("ignore:.* runs warn:RuntimeWarning")
 def test_sensitivities_are_those_of_the_program(run_program, tmp_path):
     text = (mg.scenario_folder() / "sweeps" / "sobol-indices.toml").read_text().replace("512", "32")
     file = tmp_path / "few.toml"
