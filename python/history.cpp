@@ -106,6 +106,7 @@ void add_history(py::module_& module) {
     }();
     return history_of(std::move(table));
   });
+  // The interpreter's lock stays: h5py may use the same HDF5, which is not for several threads.
   module.def("read_hdf5", [](const std::string& file) { return history_of(read_hdf5(file)); });
 }
 

@@ -81,7 +81,7 @@ PlanResult run_plan(const Sweep& plan, const SweepOptions& options) {
              .progress = [&](std::size_t, std::size_t) { end_if_asked(options.stop); },
              .format = results_format(options.format)});
   result.missing = outcome.runs_missing;
-  if (!outcome.warning.empty()) result.warnings.push_back(outcome.warning);
+  result.warnings.insert(result.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
   return {.result = std::move(result), .table = std::move(outcome.results)};
 }
 

@@ -87,7 +87,7 @@ SweepOutcome run_all(const Sweep& plan, SweepOptions options, bool is_quiet = fa
     };
     return run_sweep(plan, options);
   }();
-  if (!outcome.warning.empty()) say_warnings(plan.name, std::span(&outcome.warning, 1));
+  say_warnings(plan.name, outcome.warnings);
   if (is_quiet && outcome.runs_ended_early > 0) {
     say("warning: {}: {} of {} runs refused, stopped or failed (columns status and reason)\n", plan.name,
         outcome.runs_ended_early, outcome.runs_now);

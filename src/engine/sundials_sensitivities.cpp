@@ -100,7 +100,8 @@ int SundialsSensitivities<Library>::start(void* memory, typename Library::Functi
   std::vector<N_Vector> ds = handles(ds_);
   if (initialized_ == memory) {
     const int flag = Library::reinit(memory, s.data(), ds.data());
-    return flag == 0 ? Library::set_tolerances(memory, rtol_, handles(atol_).data()) : flag;
+    const bool has_new_tolerances = Library::is_implicit;
+    return flag == 0 && has_new_tolerances ? Library::set_tolerances(memory, rtol_, handles(atol_).data()) : flag;
   }
   const int count = static_cast<int>(s.size());
   int flag = Library::init(memory, count, function, s.data(), ds.data());

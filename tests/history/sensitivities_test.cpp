@@ -537,26 +537,26 @@ TEST(Sensitivities, IntegratedFollowAProgramThatTheNumberChanges) {
   }
 }
 
-TEST(Sensitivities, IntegratedAreThoseOfDirectWhereTheyGrowFasterThanTheStates) {
-  std::string text = with_key(with_steps(R"([
-  { displacement = "0.489 R0", duration = "1 s" },
-])"),
-                              "material.poisson_ratio");
+/// A scenario of semimech with one step, differentiated by one key.
+/// @param target  of the step
+std::string semimech(const std::string& target, const std::string& youngs_modulus, const std::string& yield_stress,
+                     const std::string& key) {
+  std::string text = with_key(with_steps("[{ " + target + ", duration = \"1 s\" }]"), key);
   text.replace(text.find("mdr"), 3, "semimech");
-  text.replace(text.find("1 GPa"), 5, "100 GPa");
-  text.replace(text.find("50 MPa"), 6, "100 MPa");
+  text.replace(text.find("1 GPa"), 5, youngs_modulus);
+  text.replace(text.find("50 MPa"), 6, yield_stress);
+  return text;
+}
+
+TEST(Sensitivities, IntegratedAreThoseOfDirectWhereTheyGrowFasterThanTheStates) {
+  const std::string text = semimech("displacement = \"0.489 R0\"", "100 GPa", "100 MPa", "material.poisson_ratio");
   expect_forward_as_direct(text, "material.poisson_ratio", {"axial.force", "work"});
 }
 
 // At the greatest pressure the second derivative of the force is infinite. The walls' displacement under force then has
 // a rate whose derivative grows without bound towards this event.
 TEST(Sensitivities, IntegratedAreThoseOfDirectWhereTheForceBendsWithoutBound) {
-  std::string text = with_key(with_steps(R"([
-  { force = "20 kN", duration = "1 s" },
-])"),
-                              "material.youngs_modulus");
-  text.replace(text.find("mdr"), 3, "semimech");
-  text.replace(text.find("50 MPa"), 6, "30 MPa");
+  std::string text = semimech("force = \"20 kN\"", "1 GPa", "30 MPa", "material.youngs_modulus");
   for (const char* configuration : {"simple", "die"}) {
     SCOPED_TRACE(configuration);
     text.replace(text.find("configuration"), text.find("steps") - text.find("configuration"),

@@ -385,8 +385,8 @@ class Rows {
     if (options.progress) options.progress(all.runs_now, runs.size());
   });
   if (with_warnings > 0) {
-    all.warning =
-        fmt::format("{} of {} runs warn; run {}: {}", with_warnings, all.runs_now, first, fmt::join(of_first, "; "));
+    all.warnings.push_back(
+        fmt::format("{} of {} runs warn; run {}: {}", with_warnings, all.runs_now, first, fmt::join(of_first, "; ")));
   }
   return all;
 }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "study/sweep/sweep_file.hpp"
 #include "study/sweep/sweep_results.hpp"
@@ -35,8 +36,9 @@ struct SweepOutcome {
   std::size_t runs_now = 0;          ///< done by this call
   std::size_t runs_ended_early = 0;  ///< of those done by this call: refused, stopped or failed
   std::size_t runs_missing = 0;      ///< left to other shards; 0: the results are complete
-  std::string warning{};             ///< how many of those done by this call warn, and of what the first one does
-  std::filesystem::path results{};   ///< their file; empty while runs are missing
+  /// How many of those done by this call warn, and of what the first one does: a sentence, or none.
+  std::vector<std::string> warnings{};
+  std::filesystem::path results{};  ///< their file; empty while runs are missing
 };
 
 /// Folder of the results: the one chosen, or else runs/NAME.
