@@ -20,7 +20,26 @@ constexpr int k_run_format = 1;  ///< format number of run.json; files of a late
 /// Largest run.json that is read [bytes].
 constexpr std::size_t k_largest_run = std::size_t{256} << 20U;
 
-Json versions() { return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}}; }
+Json files_json(const CheckedScenario& scenario) {
+  Json files = Json::object();
+  for (const auto& [option, curve] : scenario.curves) {
+    files[scenario.model + '.' + option] = {{"name", std::get<std::string>(scenario.options.at(option))},
+                                            {"text", curve.text}};
+  }
+  for (const auto& [name, text] : scenario.loading.files) files["loading." + name] = {{"name", name}, {"text", text}};
+  return files;
+}
+
+/// Values by the paths of their keys.
+Json values_json(const CheckedScenario& scenario) {
+  Json values = Json::object();
+  if (scenario.radius > 0.0) values["particle.radius"] = scenario.radius;
+  for (const auto& [key, value] : scenario.material) values["material." + key] = value;
+  for (const auto& [key, option] : scenario.options) {
+    std::visit([&](const auto& value) { values[scenario.model + '.' + key] = value; }, option);
+  }
+  return values;
+}
 
 Json to_json(const Run& run) {
   const CheckedScenario& scenario = run.scenario;
@@ -67,13 +86,8 @@ Json to_json(const Run& run) {
             {"integration", run.timings.integration},
             {"output", run.timings.output}}},
           {"warnings", record.warnings},
-          {"versions", versions()},
-          {"scenario",
-           {{"name", scenario.name},
-            {"digest", scenario_digest(scenario)},
-            {"overrides", scenario.overrides},
-            {"text", scenario.text},
-            {"files", files_json(scenario)}}}};
+          {"versions", versions_json()},
+          {"scenario", scenario_json(scenario)}};
 }
 
 /// States finite elements in the place of the law and its integrator.
@@ -100,21 +114,25 @@ void set_elements(Json& json, const RunElements& elements) {
 
 }  // namespace
 
-nlohmann::ordered_json files_json(const CheckedScenario& scenario) {
-  Json files = Json::object();
-  for (const auto& [option, curve] : scenario.curves) {
-    files[scenario.model + '.' + option] = {{"name", std::get<std::string>(scenario.options.at(option))},
-                                            {"text", curve.text}};
-  }
-  for (const auto& [name, text] : scenario.loading.files) files["loading." + name] = {{"name", name}, {"text", text}};
-  return files;
+nlohmann::ordered_json scenario_json(const CheckedScenario& scenario) {
+  return {{"name", scenario.name},           {"model", scenario.model}, {"digest", scenario_digest(scenario)},
+          {"overrides", scenario.overrides}, {"text", scenario.text},   {"files", files_json(scenario)},
+          {"values", values_json(scenario)}};
+}
+
+nlohmann::ordered_json versions_json() {
+  return {{"monograin", version()}, {"sundials", sundials_version()}, {"compiler", __VERSION__}};
+}
+
+std::string record_text(const nlohmann::ordered_json& record) {
+  // Comments in a table need not be UTF-8: invalid bytes are replaced.
+  return record.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 std::string run_json(const Run& run) {
   Json json = to_json(run);
   if (run.elements) set_elements(json, *run.elements);
-  // Comments in a table need not be UTF-8: invalid bytes are replaced.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return record_text(json);
 }
 
 void write_run(Run& run, StagedFolder& folder, const std::function<void(const fs::path&)>& draw) {

@@ -21,8 +21,16 @@ inline constexpr std::array<std::string_view, 2> k_run_tables{"history.csv", "ev
 /// @throws std::runtime_error if run.json is missing, too large, of a later format, or holds no scenario
 [[nodiscard]] CheckedScenario scenario_of_run(const std::filesystem::path& folder);
 
-/// Content of the files that options and steps of a scenario name, so that it can be repeated without these files.
-[[nodiscard]] nlohmann::ordered_json files_json(const CheckedScenario& scenario);
+/// What results record of their scenario, so that it can be repeated without any file: name, model, digest, overrides,
+/// text, the content of the files that its options and steps name; and in SI every value of particle, material and
+/// model.
+[[nodiscard]] nlohmann::ordered_json scenario_json(const CheckedScenario& scenario);
+
+/// Versions of the program, of SUNDIALS and of the compiler.
+[[nodiscard]] nlohmann::ordered_json versions_json();
+
+/// Text of a file that records a result.
+[[nodiscard]] std::string record_text(const nlohmann::ordered_json& record);
 
 /// Text of run.json.
 [[nodiscard]] std::string run_json(const Run& run);

@@ -157,9 +157,10 @@ void remove_partial_files(const fs::path& folder) {
 }
 
 void expect_own_file(const fs::path& file, const fs::path& witness) {
-  // First words of the tables and gnuplot scripts that the program writes.
-  constexpr std::array<std::string_view, 5> k_own{"# program: monograin ",
-                                                  "# sweep: ", "# scenario: ", "# title: ", "# Draws '"};
+  // First words of the tables, records and gnuplot scripts that the program writes.
+  constexpr std::array<std::string_view, 6> k_own{
+      "# program: monograin ",          "# sweep: ", "# scenario: ", "# title: ", "# Draws '",
+      "{\n  \"program\": \"monograin\""};
   constexpr std::size_t k_longest = 32;
   std::error_code error;
   const fs::file_type type = fs::symlink_status(file, error).type();

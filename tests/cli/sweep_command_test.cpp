@@ -7,10 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 
 #include "cli/command_test.hpp"
+#include "history/run.hpp"
 #include "history/table.hpp"
 #include "support/refusal.hpp"
 
@@ -57,6 +59,51 @@ TEST_F(SweepCommand, LeavesOneFileOfResults) {
             "warning: many: 120 of 800 runs refused, stopped or failed (columns status and reason)\n");
   EXPECT_EQ(text("one/results.csv"), text("runs/many/results.csv"));
   EXPECT_FALSE(fs::exists(path("one/sweep.journal")));
+}
+
+TEST_F(SweepCommand, LeavesARecordThatRepeatsItWithoutItsFiles) {
+  fs::create_directory(path("scenes"));
+  fs::create_directory(path("elsewhere"));
+  write_text(path("scenes/law.csv"), "overlap_over_radius,pressure_over_yield\n0,2.75\n0.1,2.2\n0.3,1.5\n0.6,1.1\n");
+  write_text(path("scenes/waves.csv"), "time[s],displacement[um]\n0,0\n1,100\n2,50\n");
+  write_text(path("scenes/scene.toml"), R"toml(model = "mdr"
+[particle]
+radius = "1 mm"
+[material]
+youngs_modulus = "1 GPa"
+poisson_ratio = 0.3
+yield_stress = "40 MPa"
+[mdr]
+pressure_table = "law.csv"
+[loading]
+configuration = "simple"
+steps = [{ displacement = { table = "waves.csv", time = "time[s]", value = "displacement[um]" } }]
+)toml");
+  write_text(path("values.csv"), "material.yield_stress[MPa]\n20\n40\n");
+  write_text(path("sweep.toml"), "scenario = \"scenes/scene.toml\"\ndesign = \"table\"\ntable = \"values.csv\"\n");
+  ASSERT_EQ(monograin("sweep sweep.toml -o one").code, 0) << text("stderr.txt");
+  const auto record = nlohmann::json::parse(text("one/sweep.json"));
+  EXPECT_TRUE(record.at("citation").contains("mdr")) << record.dump(2);
+  EXPECT_EQ(record.at("versions").at("monograin"), version());
+  write_text(path("elsewhere/sweep.toml"), record.at("text").get<std::string>());
+  fs::create_directory(path("elsewhere/scenes"));
+  for (const auto& file : record.at("files")) {
+    const auto name = file.at("name").get<std::string>();
+    const bool is_of_sweep = file.at("key") == "scenario" || file.at("key") == "table";
+    write_text(path(is_of_sweep ? "elsewhere/" + name : "elsewhere/scenes/" + name),
+               file.at("text").get<std::string>());
+  }
+  ASSERT_EQ(monograin("sweep elsewhere/sweep.toml -o two").code, 0) << text("stderr.txt");
+  EXPECT_EQ(text("two/results.csv"), text("one/results.csv"));
+  EXPECT_EQ(text("two/sweep.json"), text("one/sweep.json"));
+}
+
+TEST_F(SweepCommand, LeavesARecordOfSomeoneElseAsItIs) {
+  fs::create_directory(path("mine"));
+  write_text(path("mine/sweep.json"), "{}\n");
+  EXPECT_EQ(monograin("sweep many.toml -o mine").code, 2);
+  EXPECT_TRUE(contains(text("stderr.txt"), "sweep.json")) << text("stderr.txt");
+  EXPECT_EQ(text("mine/sweep.json"), "{}\n");
 }
 
 TEST_F(SweepCommand, GoesOnAfterBeingKilledAtRandomMoments) {
@@ -217,7 +264,7 @@ TEST_F(SweepCommand, WritesHdf5ThatEveryCommandReads) {
   ASSERT_EQ(swept.code, 0) << swept.err;
   EXPECT_TRUE(contains(swept.err, "80 runs in ")) << swept.err;
   EXPECT_TRUE(contains(swept.err, " -> runs/indices/results.h5\n")) << swept.err;
-  EXPECT_EQ(std::distance(fs::directory_iterator(path("runs/indices")), {}), 1) << "results.h5 alone";
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("runs/indices")), {}), 2) << "results.h5 and sweep.json";
   ASSERT_EQ(monograin("plot runs/indices -o hdf5.svg").code, 0) << text("stderr.txt");
   const Outcome analysed = monograin("sensitivity indices.toml");
   ASSERT_EQ(analysed.code, 0) << analysed.err;
@@ -281,7 +328,7 @@ TEST_F(SweepCommand, WritesHdf5AfterBeingKilledAtAnyMoment) {
   }
   ASSERT_EQ(monograin("sweep many.toml --format hdf5 -o killed").code, 0) << text("stderr.txt");
   EXPECT_EQ(text("killed/results.h5"), text("whole/results.h5"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(path("killed")), {}), 2) << "histories and results";
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("killed")), {}), 3) << "histories, results and sweep.json";
 }
 
 TEST_F(SweepCommand, RunsEveryReadySweep) {

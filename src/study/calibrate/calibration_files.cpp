@@ -166,6 +166,8 @@ Json fit_json(const Calibration& calibration, const CalibrationResult& result) {
 Json to_json(const Calibration& calibration, const CalibrationResult& result) {
   const Uncertainty& uncertainty = result.uncertainty;
   const std::size_t p = calibration.free.size();
+  Json scenario = scenario_json(calibration.scenario);
+  scenario["text"] = calibration.scenario_text;  // the table alone, where it is one of the calibration file
   return {{"program", "monograin"},
           {"calibration", calibration.name},
           {"title", calibration.title},
@@ -191,13 +193,8 @@ Json to_json(const Calibration& calibration, const CalibrationResult& result) {
           {"notes", result.notes},
           {"warnings", result.warnings},
           {"citation", reference_texts(*find_model(calibration.scenario.model))},
-          {"versions", {{"monograin", version()}, {"compiler", __VERSION__}}},
-          {"scenario",
-           {{"name", calibration.scenario.name},
-            {"model", calibration.scenario.model},
-            {"digest", scenario_digest(calibration.scenario)},
-            {"text", calibration.scenario_text},
-            {"files", files_json(calibration.scenario)}}},
+          {"versions", versions_json()},
+          {"scenario", std::move(scenario)},
           {"data", data_json(calibration)},
           {"text", calibration.text}};
 }
@@ -320,7 +317,7 @@ Table fit_table(const Calibration& calibration, const CalibrationResult& result)
 }
 
 std::string calibration_json(const Calibration& calibration, const CalibrationResult& result) {
-  return to_json(calibration, result).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return record_text(to_json(calibration, result));
 }
 
 std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder,

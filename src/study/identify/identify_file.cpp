@@ -99,12 +99,13 @@ std::string override_of_keys(const std::vector<std::string>& paths) {
 
 class PlanReader {
  public:
-  explicit PlanReader(NamedText source)
-      : file_(std::move(source.file)), text_(std::move(source.text)), reading_{faults_} {}
+  explicit PlanReader(NamedText source) : file_(std::move(source.file)), reading_{faults_} {
+    made_.text = std::move(source.text);
+  }
 
   ExperimentPlan read() {
     made_.name = file_.stem().string();
-    const toml::table tree = parse_document(text_, file_.string());
+    const toml::table tree = parse_document(made_.text, file_.string());
     expect_type(tree, file_.string(), DocumentType::experiment_plan);
     const bool scenario_is_table = tree["scenario"].is_table();
     const Keys keys = plan_keys(scenario_is_table);
@@ -112,7 +113,7 @@ class PlanReader {
     const SourceLocation top{file_.string()};
     const Section root(reading_, {&tree, top, "the plan"}, keys, foreign);
     made_.title = root.text("title");
-    auto found = calibration::scenario_in(reading_, root, scenario_is_table, text_, file_.string());
+    auto found = calibration::scenario_in(reading_, root, scenario_is_table, made_.text, file_.string());
     if (!found) faults_.throw_if_any();
     scenario_ = std::move(*found);
     made_.scenario = scenario_.checked;
@@ -318,7 +319,6 @@ class PlanReader {
   }
 
   fs::path file_;
-  std::string text_;
   FaultList faults_;
   Reading reading_;
   ExperimentPlan made_;

@@ -32,6 +32,7 @@ struct ExperimentProgram {
 struct ExperimentPlan {
   std::string name;  ///< of the file, without folder and extension
   std::string title;
+  std::string text;  ///< of the file
   CheckedScenario scenario;
   std::vector<FreeParameter> free;          ///< parameters whose errors are asked for
   std::vector<double> values;               ///< their true values [SI]: those of the scenario, none of which is zero,

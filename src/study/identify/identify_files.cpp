@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "catalogue.hpp"
 #include "figure/chart.hpp"
 #include "figure/page.hpp"
 #include "history/run.hpp"
+#include "history/run_files.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/units.hpp"
 #include "study/calibrate/calibration_language.hpp"
@@ -50,6 +52,17 @@ std::string_view si_unit(const FreeParameter& parameter) {
   if (parameter.key.path == calibration::k_compliance) return "m/N";
   const std::string_view si = dimension_info(parameter.key.dimension).si;
   return si.empty() ? "-" : si;
+}
+
+/// What repeats the plan.
+nlohmann::ordered_json record_json(const ExperimentPlan& plan) {
+  return {{"program", "monograin"},
+          {"plan", plan.name},
+          {"title", plan.title},
+          {"citation", reference_texts(*find_model(plan.scenario.model))},
+          {"versions", versions_json()},
+          {"scenario", scenario_json(plan.scenario)},
+          {"text", plan.text}};
 }
 
 /// Names of the planned programs, in one text.
@@ -213,6 +226,7 @@ Table identify_table(const ExperimentPlan& plan, const IdentifyResult& result) {
 
 std::string write_identify(const ExperimentPlan& plan, const IdentifyResult& result, StagedFolder& folder) {
   write_text_file(folder.path() / k_identify_marker, csv_text(identify_table(plan, result)));
+  write_text_file(folder.path() / "design.json", record_text(record_json(plan)));
   const std::string problem = draw(plan, all_sets(plan, result), folder.path());
   folder.publish(folder.age());
   return problem;

@@ -19,8 +19,8 @@ namespace monograin {
 /// The file that marks a folder of these results.
 inline constexpr const char* k_identify_marker = "errors.csv";
 
-/// Writes errors.csv and figure.svg, a bar of the relative error for each candidate and a panel for each parameter,
-/// with its script and data; all of them or none.
+/// Writes errors.csv; design.json, which repeats the plan; and figure.svg, a bar of the relative error for each
+/// candidate and a panel for each parameter, with its script and data; all of them or none.
 /// @param folder  made with k_identify_marker
 /// @return why there is no figure; empty: there is
 /// @throws std::runtime_error naming what could not be written

@@ -13,6 +13,7 @@
 
 #include "figure/chart.hpp"
 #include "figure/page.hpp"
+#include "history/run.hpp"
 #include "numerics/quantile.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
@@ -155,7 +156,10 @@ struct Abscissae {
     }
   }
   Table table(std::move(columns));
-  table.header = {{"sweep", sweep.name}, {"sweep_digest", sweep.digest}, {"design", sweep.design}};
+  table.header = {{"program", fmt::format("monograin {}", version())},
+                  {"sweep", sweep.name},
+                  {"sweep_digest", sweep.digest},
+                  {"design", sweep.design}};
   for (const StepBands& step : bands.steps) {
     for (std::size_t i = 0; i < step.x.size(); ++i) {
       std::vector<double> row{static_cast<double>(step.step), step.x[i], static_cast<double>(step.runs[i])};

@@ -130,7 +130,10 @@ using Style = figure::ChartSeries::Style;
     columns.push_back({std::string(name), is_morris(sweep) ? "" : "-", {}});
   }
   Table table(std::move(columns));
-  table.header = {{"sweep", sweep.name}, {"sweep_digest", sweep.digest}, {"design", sweep.design}};
+  table.header = {{"program", fmt::format("monograin {}", version())},
+                  {"sweep", sweep.name},
+                  {"sweep_digest", sweep.digest},
+                  {"design", sweep.design}};
   table.header.emplace_back("confidence of the intervals", fmt::format("{}", found.front().confidence));
   for (std::size_t r = 0; r < found.size(); ++r) {
     table.header.emplace_back("samples of " + found[r].result, fmt::format("{}", found[r].samples()));

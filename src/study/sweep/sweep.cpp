@@ -215,6 +215,7 @@ void prepare(const fs::path& folder, const fs::path& results) {
         fmt::format("{}: holds the result of another command; choose another folder", folder.string()));
   }
   expect_own_file(results, results);
+  expect_own_file(folder / k_sweep_record, folder / k_sweep_record);
   for (const char* name : k_made_from_results) {
     expect_own_file(folder / name, folder / name);
     figure::expect_own_figure((folder / name).replace_extension(".svg"));
@@ -250,14 +251,16 @@ void remove_leftovers(const Sweep& sweep, const fs::path& folder) {
   if (!sweep.keeps_histories && fs::is_empty(histories)) fs::remove(histories);
 }
 
-/// Removes what results of a sweep make superfluous: files of an earlier sweep, and the journals. These are removed
-/// last: where one is left, the process was killed in between, and the next call does the rest.
-void clean_up(const Sweep& sweep, const fs::path& folder) {
+/// Writes the record beside the results of a sweep, and removes what these make superfluous: files of an earlier sweep,
+/// and the journals. These are removed last: where one is left, the process was killed in between, and the next call
+/// does the rest.
+void complete(const Sweep& sweep, const fs::path& folder) {
   std::vector<fs::path> journals = journals_in(folder);
   std::erase_if(journals, [&](const fs::path& file) { return !is_journal_of(file, sweep.digest); });
   if (journals.empty()) return;
   remove_other_results(sweep, folder);
   remove_leftovers(sweep, folder);
+  write_sweep_record(sweep, folder);
   for (const fs::path& file : journals) fs::remove(file);
 }
 
@@ -405,7 +408,7 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   {
     const FolderLock lock(options.folder);
     if (const auto found = found_results(sweep, options.folder, options.format)) {
-      clean_up(sweep, options.folder);
+      complete(sweep, options.folder);
       return {.runs_before = sweep.runs.size(), .results = *found};
     }
   }
@@ -430,7 +433,7 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
     outcome.results =
         write_results(sweep, options.folder, format, [&rows](const TextSink& sink) { rows.for_each_line(sink); });
   }
-  clean_up(sweep, options.folder);
+  complete(sweep, options.folder);
   return outcome;
 }
 

@@ -44,7 +44,6 @@ class SweepReader {
   [[nodiscard]] Sweep read() {
     const toml::table tree = parse_document(text_, file_.string());
     expect_type(tree, file_.string(), DocumentType::sweep);
-    digested_ = sweep::text_of_runs(tree);
     const std::vector<KeySpec> keys = sweep::root_keys(tree["scenario"].is_table());
     const SourceLocation top{file_.string()};
     const Section root(reading_, {&tree, top, "the sweep"}, keys);
@@ -77,9 +76,15 @@ class SweepReader {
     faults_.throw_if_any();
     digest_varied_files();
     std::vector<std::string> doubts = doubts_about(*scenario_, factors_);
+    std::vector<std::string> models = models_;
+    if (models.empty()) models.push_back(scenario_tree_["model"].value_or(std::string()));
+    std::string determining = fmt::format("monograin {}\n{}", version(), sweep::text_of_runs(tree));
+    for (const FileKey& file : files_) determining += '\n' + file.text;
+    std::string digest = text_digest(determining);
 
     return {.name = file_.stem().string(),
             .design = design_,
+            .models = std::move(models),
             .factors = sweep_factors(),
             .runs = std::move(runs_),
             .left_out = left_out_,
@@ -92,9 +97,9 @@ class SweepReader {
             .bands = bands_ ? std::optional(std::move(bands_->request)) : std::nullopt,
             .doubts = std::move(doubts),
             .text = std::move(text_),
-            .scenario_text = std::move(scenario_text_),
+            .files = std::move(files_),
             .seed = seed_,
-            .digest = text_digest(fmt::format("monograin {}\n{}", version(), digested_))};
+            .digest = std::move(digest)};
   }
 
  private:
@@ -114,6 +119,12 @@ class SweepReader {
       faults_.add(root.place(), fmt::format("key '{}' is missing for design = \"{}\"; expected for example {}", key,
                                             design_, example_line(*find_key(keys, key))));
     }
+  }
+
+  /// Keeps a file that determines the results. Several steps may name the same one.
+  void take_file(FileKey file) {
+    const auto is_same = [&](const FileKey& other) { return other.path == file.path && other.name == file.name; };
+    if (std::ranges::none_of(files_, is_same)) files_.push_back(std::move(file));
   }
 
   // --- the scenario
@@ -148,8 +159,7 @@ class SweepReader {
     }
     scenario_name_ = file.stem().string();
     scenario_folder_ = file.parent_path();
-    digested_ += '\n' + scenario_text;
-    scenario_text_ = std::move(scenario_text);
+    take_file({"scenario", name, std::move(scenario_text)});
   }
 
   /// Reports an unknown model, without which no key of a material is known.
@@ -253,7 +263,7 @@ class SweepReader {
                                                   .parameters = {joint.means[k], joint.standard_errors[k], 0.0}};
         factors_.push_back(std::move(*factor));
       }
-      digested_ += '\n' + text;
+      take_file({"calibration", root.text("calibration"), text});
       joint_ = std::move(joint);
     } catch (const std::runtime_error& error) {
       faults_.add(where, fmt::format("{}: {}", named, error.what()));
@@ -491,7 +501,7 @@ class SweepReader {
                       shown(name), problem.empty() ? "the file is too large" : problem, on_one_line(file.string())));
       return;
     }
-    digested_ += '\n' + text;
+    take_file({"table", name, text});
     const DesignTable table = parse_design_table(text, file.string(), faults_);
     const std::vector<std::string> units = take_columns(table);
     if (faults_.size() > 0) return;
@@ -609,8 +619,10 @@ class SweepReader {
     for (std::size_t run = 0; run < runs_.size(); ++run) {
       try {
         const CheckedScenario scenario = scenario_with(*scenario_, factors, runs_[run]);
-        for (const auto& [option, curve] : scenario.curves) digested_ += '\n' + curve.text;
-        for (const auto& [name, text] : scenario.loading.files) digested_ += '\n' + text;
+        for (const auto& [option, curve] : scenario.curves) {
+          take_file({scenario.model + '.' + option, std::get<std::string>(scenario.options.at(option)), curve.text});
+        }
+        for (const auto& [name, text] : scenario.loading.files) take_file({"loading", name, text});
         // Runs with other words, such as another configuration, may have other columns.
         if (std::ranges::all_of(factors_, &Factor::is_number)) sweep::check_columns(columns_, scenario, faults_);
         if (bands_) sweep::check_columns(bands_->columns, scenario, faults_);
@@ -631,7 +643,7 @@ class SweepReader {
       std::set<std::string> names;
       for (std::size_t run = 0; run < runs_.size(); ++run) names.insert(std::get<std::string>(runs_[run][f]));
       for (const std::string& name : names) {
-        digested_ += '\n' + read_text_file(scenario_folder_ / name, k_largest_text).text;
+        take_file({factors_[f].key, name, read_text_file(scenario_folder_ / name, k_largest_text).text});
       }
     }
   }
@@ -653,11 +665,10 @@ class SweepReader {
   FaultList faults_;
   Reading reading_;
   std::string design_;
-  std::string digested_;  ///< texts that determine the results
+  std::vector<FileKey> files_;  ///< that determine the results, too
   toml::table scenario_tree_;
   std::optional<ScenarioTemplate> scenario_;
   std::string scenario_name_;
-  std::string scenario_text_;
   std::optional<std::uint64_t> seed_;
   fs::path scenario_folder_;
   std::vector<std::string> models_;  ///< models over which the sweep varies

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scenario/file_keys.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/text_file.hpp"
 #include "study/sweep/design.hpp"
@@ -23,8 +24,9 @@ struct BandRequest {
 };
 
 struct Sweep {
-  std::string name;    ///< of the file, without folder and extension
-  std::string design;  ///< grid, table, maxpro, sobol, halton, lhs, random, saltelli, morris
+  std::string name;                   ///< of the file, without folder and extension
+  std::string design;                 ///< grid, table, maxpro, sobol, halton, lhs, random, saltelli, morris
+  std::vector<std::string> models{};  ///< of the scenario, or those that are varied
   std::vector<SweepFactor> factors;
   SweepRuns runs;
   std::size_t left_out = 0;  ///< points of a grid that the constraints exclude
@@ -35,9 +37,11 @@ struct Sweep {
   std::vector<std::string> columns;  ///< of the results, e.g. max.axial.force; empty: all final and largest values
   std::vector<std::string> results;  ///< formulas for which indices are estimated
   std::optional<BandRequest> bands{};
-  std::vector<std::string> doubts{};    ///< values that may not be meant as they are read, a sentence each
-  std::string text{};                   ///< of the sweep file
-  std::string scenario_text{};          ///< of the scenario's file; empty: it is a table of the sweep file
+  std::vector<std::string> doubts{};  ///< values that may not be meant as they are read, a sentence each
+  std::string text{};                 ///< of the sweep file
+  /// Files that sweep and scenario name, by the keys that name them: scenario (unless it is a table of the sweep file),
+  /// table, calibration, and the scenario's own. Those of its steps have the key loading.
+  std::vector<FileKey> files{};
   std::optional<std::uint64_t> seed{};  ///< of a design that is drawn
   std::string digest;  ///< of everything that determines the results: sweep, scenario, tables, program version
 };

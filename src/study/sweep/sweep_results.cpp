@@ -8,10 +8,13 @@
 #include <bit>
 #include <fstream>
 #include <istream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
 
+#include "catalogue.hpp"
 #include "history/run.hpp"
+#include "history/run_files.hpp"
 #include "scenario/words.hpp"
 #include "study/sweep/sweep_journal.hpp"
 
@@ -98,8 +101,27 @@ void write_as_csv(const Sweep& sweep, const fs::path& file, const TableLines& li
   if (sweep.seed) attributes.emplace_back("seed", fmt::format("{}", *sweep.seed));
   attributes.emplace_back("sweep_text", sweep.text);
   attributes.emplace_back("scenario", sweep.scenario_name);
-  if (!sweep.scenario_text.empty()) attributes.emplace_back("scenario_text", sweep.scenario_text);
+  const auto scenario = std::ranges::find(sweep.files, "scenario", &FileKey::path);
+  if (scenario != sweep.files.end()) attributes.emplace_back("scenario_text", scenario->text);
   return attributes;
+}
+
+/// What repeats a sweep.
+[[nodiscard]] nlohmann::ordered_json record_json(const Sweep& sweep) {
+  using Json = nlohmann::ordered_json;
+  Json files = Json::array();
+  for (const auto& [key, name, text] : sweep.files) files.push_back({{"key", key}, {"name", name}, {"text", text}});
+  Json citation = Json::object();
+  for (const std::string& model : sweep.models) citation[model] = reference_texts(*find_model(model));
+  return {{"program", "monograin"},
+          {"sweep", sweep.name},
+          {"digest", sweep.digest},
+          {"design", sweep.design},
+          {"seed", sweep.seed ? Json(*sweep.seed) : Json()},
+          {"citation", std::move(citation)},
+          {"versions", versions_json()},
+          {"text", sweep.text},
+          {"files", std::move(files)}};
 }
 
 [[nodiscard]] std::string group_of(const Sweep& sweep, const Column& column) {
@@ -187,6 +209,10 @@ fs::path write_results(const Sweep& sweep, const fs::path& folder, ResultsFormat
   sync_to_disk(file);
   sync_to_disk(folder);
   return file;
+}
+
+void write_sweep_record(const Sweep& sweep, const fs::path& folder) {
+  write_text_file(folder / k_sweep_record, record_text(record_json(sweep)));
 }
 
 void remove_other_results(const Sweep& sweep, const fs::path& folder) {

@@ -20,6 +20,9 @@ inline constexpr std::array<std::string_view, 2> k_results_formats{"csv", "hdf5"
 /// Format of a name; none if the name is empty. @throws std::invalid_argument for another name
 [[nodiscard]] std::optional<ResultsFormat> results_format(std::string_view name);
 
+/// Name of the file that repeats a sweep: its text, and all files that it and its scenario name.
+inline constexpr const char* k_sweep_record = "sweep.json";
+
 [[nodiscard]] std::filesystem::path results_file(const std::filesystem::path& folder, ResultsFormat format);
 
 /// Format of the results, of whatever sweep, that the program has written in a folder; CSV if there are none.
@@ -35,13 +38,16 @@ inline constexpr std::array<std::string_view, 2> k_results_formats{"csv", "hdf5"
                                                                  const std::filesystem::path& folder,
                                                                  std::optional<ResultsFormat> wanted);
 
-/// Writes the results of a sweep into a folder, completely or not at all, and removes what killed processes have
-/// written there in part; no other process may write there. The lines of the file before its rows name
-/// program, sweep and design, and have digests of the sweep and of all that follows them.
+/// Writes the results of a sweep into a folder, completely or not at all, and removes what
+/// killed processes have written there in part; no other process may write there. The lines of the file before its rows
+/// name program, sweep and design, and have digests of the sweep and of all that follows them.
 /// @return the file
 /// @throws std::runtime_error naming the file and why it cannot be written
 [[nodiscard]] std::filesystem::path write_results(const Sweep& sweep, const std::filesystem::path& folder,
                                                   ResultsFormat format, const TableLines& lines);
+
+/// Writes the file that repeats the sweep. @throws std::runtime_error naming the file and why it cannot be written
+void write_sweep_record(const Sweep& sweep, const std::filesystem::path& folder);
 
 /// Removes results of other sweeps in any format, but no file that the program has not written.
 void remove_other_results(const Sweep& sweep, const std::filesystem::path& folder);

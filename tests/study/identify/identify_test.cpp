@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <vector>
@@ -501,6 +502,10 @@ TEST_F(PlanTest, WritesARowForEachSetAndParameter) {
   EXPECT_EQ(table.at(0, *table.find("correlation(material.yield_stress)")),
             result.planned->uncertainty.correlation(0, 1));
   EXPECT_TRUE(std::filesystem::exists(folder() / "out/figure.svg"));
+  const auto record = nlohmann::json::parse(read_text(folder() / "out/design.json"));
+  EXPECT_EQ(record.at("text"), read_text(MONOGRAIN_SOURCE_DIR "/scenarios/design/uniaxial.toml"));
+  EXPECT_EQ(record.at("scenario").at("text"), read_text(MONOGRAIN_SOURCE_DIR "/scenarios/uniaxial.toml"));
+  EXPECT_EQ(record.at("scenario").at("values").at("material.yield_stress"), plan.values[1]);
 }
 
 TEST_F(PlanTest, RefusesWhatItDoesNotUnderstand) {

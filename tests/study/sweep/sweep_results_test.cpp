@@ -135,13 +135,15 @@ TEST_F(SweepResults, AreAloneAfterACallThatWasKilledBeforeItRemovedTheRest) {
   // The folder as it is between the writing of results and the removal of what they make superfluous.
   write_text(folder() / "out/results.csv", earlier);
   write_text(folder() / "out/bands.csv", "# sweep: s\n");
+  write_text(folder() / "out/sweep.json", "{\n  \"program\": \"monograin\",\n  \"sweep\": \"other\"\n}\n");
   fs::copy(folder() / "histories", folder() / "out/histories");
   { const SweepJournal journal(folder() / "out/sweep.journal", sweep_.digest); }
   const SweepOutcome again = run(sweep_, "out", ResultsFormat::hdf5);
   EXPECT_EQ(again.runs_now, 0U);
   EXPECT_EQ(again.results, folder() / "out/results.h5");
   EXPECT_EQ(bytes("out/results.h5"), results);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder() / "out"), {}), 1) << "results.h5 alone";
+  EXPECT_TRUE(contains(bytes("out/sweep.json"), sweep_.digest)) << bytes("out/sweep.json");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder() / "out"), {}), 2) << "results.h5 and sweep.json";
 }
 
 TEST_F(SweepResults, KeepWhatWasMadeFromThemWhenTheyAreConverted) {

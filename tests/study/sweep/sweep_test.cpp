@@ -604,7 +604,7 @@ TEST_F(SweepFiles, NothingOfAnEarlierSweepStaysBesideTheResultsOfAnother) {
   write("out/plan.txt", "of the user");
   const std::string only = "scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { values = [0.2, 0.3] }\n";
   static_cast<void>(results(read(only + bands), "out"));
-  EXPECT_EQ(names_in(path("out")), (std::set<std::string>{"histories", "plan.txt", "results.csv"}));
+  EXPECT_EQ(names_in(path("out")), (std::set<std::string>{"histories", "plan.txt", "results.csv", "sweep.json"}));
   EXPECT_EQ(names_in(path("out") / "histories"), (std::set<std::string>{"1.csv", "2.csv", "notes.txt"}));
   static_cast<void>(results(read(only), "out"));
   EXPECT_EQ(names_in(path("out") / "histories"), std::set<std::string>{"notes.txt"});
@@ -774,7 +774,8 @@ TEST_F(StoppedSweep, ShardsMergeToTheSameBytesInWhateverOrder) {
       EXPECT_EQ(outcome.runs_missing == 0, index == order.back());
     }
     EXPECT_EQ(read_text(path("shards/results.csv")), whole_);
-    EXPECT_EQ(std::distance(fs::directory_iterator(path("shards")), fs::directory_iterator{}), 1);
+    EXPECT_EQ(std::distance(fs::directory_iterator(path("shards")), fs::directory_iterator{}), 2)
+        << "results.csv and sweep.json";
   }
 }
 
