@@ -46,7 +46,7 @@ constexpr std::array k_events{
 constexpr std::array k_references{&references::k_monograin, &references::k_agarwal2018};
 
 constexpr std::array<string_view, 8> k_domain{
-    "fitted to finite elements of E/Y 6.25 to 200; a warning below",
+    "fitted to finite elements of E/Y 6.25 to 200; a warning outside",
     "fitted to two walls up to 0.5 R0, a closed die up to 0.47 R0 and six walls up to 0.19 R0; a warning beyond 0.5 R0",
     "axial forces within 1 to 7 % (rms) of finite elements, lateral forces of a die within 6 to 17 %; at worst: the "
     "end of a die beyond 0.44 R0 (+15 %), walls that come after others (15 %), unloading where pores have closed (25 "

@@ -16,7 +16,9 @@ enum RegimeWord { k_open, k_elastic, k_plastic, k_unloaded };
 constexpr std::array<string_view, 4> k_regime_words{"open", "elastic", "plastic", "unloaded"};
 
 /// Fitted range of the law.
+// E/Y of the softest and the stiffest material that the law is fitted to.
 constexpr double k_least_modulus_over_yield = 6.25;
+constexpr double k_largest_modulus_over_yield = 200.0;
 constexpr double k_deepest = 0.5;
 /// Stored energy, over the work, below which it is negative by more than round-off.
 constexpr double k_least_stored = -1e-6;
@@ -306,6 +308,8 @@ std::vector<Diagnostic> System::warnings() const {
   std::vector<Diagnostic> found;
   if (modulus_over_yield_ < k_least_modulus_over_yield)
     found.push_back({"E/Y is below 6.25, the softest material that the law is fitted to", "E/Y", modulus_over_yield_});
+  if (modulus_over_yield_ > k_largest_modulus_over_yield)
+    found.push_back({"E/Y is above 200, the stiffest material that the law is fitted to", "E/Y", modulus_over_yield_});
   if (deepest_ > k_deepest)
     found.push_back({"a wall goes beyond half the radius, where the law is not fitted", "overlap/R0", deepest_});
   if (least_stored_ < k_least_stored) {

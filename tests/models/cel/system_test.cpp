@@ -444,6 +444,9 @@ TEST(CelWarning, NamesWhatTheLawIsNotFittedTo) {
   };
   ASSERT_EQ(warnings(6.2, 0.1).size(), 1u);
   EXPECT_TRUE(contains(warnings(6.2, 0.1)[0], "E/Y is below 6.25")) << warnings(6.2, 0.1)[0];
+  ASSERT_EQ(warnings(201.0, 0.1).size(), 1u);
+  EXPECT_TRUE(contains(warnings(201.0, 0.1)[0], "E/Y is above 200")) << warnings(201.0, 0.1)[0];
+  EXPECT_TRUE(warnings(200.0, 0.1).empty());
   ASSERT_EQ(warnings(25.0, 0.52).size(), 1u);
   EXPECT_TRUE(contains(warnings(25.0, 0.52)[0], "beyond half the radius")) << warnings(25.0, 0.52)[0];
   EXPECT_TRUE(warnings(6.25, 0.5).empty());
