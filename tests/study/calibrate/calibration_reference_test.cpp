@@ -202,24 +202,24 @@ TEST(PlasticCalibration, RecoversTheConstantsOfEveryModel) {
           "material.youngs_modulus", 1e11, "{ from = \"20 GPa\", to = \"500 GPa\" }");
 }
 
-/// Calibration of scenarios/calibrate/cel.toml, whose data are made with R0 = 10 mm, E = 2 GPa and Y = 40 MPa.
+/// Calibration of scenarios/calibrate/cel.toml, whose data are made with R0 = 10 mm, E = 2 GPa and Y = 20 MPa.
 class CelCalibration : public ::testing::Test {
  protected:
   static constexpr double k_radius = 10e-3;
   static constexpr double k_modulus = 2e9;
-  static constexpr double k_yield_stress = 40e6;
+  static constexpr double k_yield_stress = 20e6;
   Calibration calibration = read_calibration(MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/cel.toml");
 };
 
 TEST_F(CelCalibration, HasTheDataOfFiniteElements) {
-  const Table elements = read_csv(MONOGRAIN_SOURCE_DIR "/plots/fe/ep_simple_EY50_nu0.30.csv");
+  const Table elements = read_csv(MONOGRAIN_SOURCE_DIR "/plots/fe/ep_simple_EY100_nu0.30.csv");
   EXPECT_EQ(elements.header_number("E_over_Y[-]"), k_modulus / k_yield_stress);
   const std::vector<double> d = elements.column("delta_o_over_R0");
   const std::vector<double> F = elements.column("F_over_E_R0^2");
   const Table data = read_csv(MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/cel.csv");
   const std::vector<double> displacement = data.column("displacement");
   const std::vector<double> force = data.column("force");
-  ASSERT_EQ(data.row_count(), 75U);
+  ASSERT_EQ(data.row_count(), 90U);
   std::size_t next = 0;
   for (std::size_t row = 0; row < data.row_count(); ++row) {
     // Written with seven digits, in mm and N.
@@ -236,10 +236,10 @@ TEST_F(CelCalibration, HasTheDataOfFiniteElements) {
 TEST_F(CelCalibration, BringsBackTheMaterialAsNearAsTheLawIsToFiniteElements) {
   const CalibrationResult result = calibrate(calibration);
   ASSERT_EQ(calibration.free[0].key.path, "material.youngs_modulus");
-  EXPECT_NEAR(result.solution.parameters[0], 1.036 * k_modulus, 0.005 * k_modulus);
-  EXPECT_NEAR(result.solution.parameters[1], k_yield_stress, 0.005 * k_yield_stress);
+  EXPECT_NEAR(result.solution.parameters[0], 1.053 * k_modulus, 0.005 * k_modulus);
+  EXPECT_NEAR(result.solution.parameters[1], 1.013 * k_yield_stress, 0.005 * k_yield_stress);
   // Residuals are over the largest force.
-  EXPECT_LT(std::sqrt(result.sum_of_squares / static_cast<double>(calibration.y.values.size())), 0.01);
+  EXPECT_LT(std::sqrt(result.sum_of_squares / static_cast<double>(calibration.y.values.size())), 0.015);
 }
 
 /// Numbers after a word of a header line, up to a semicolon.
