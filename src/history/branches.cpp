@@ -198,8 +198,9 @@ std::vector<BranchComparison> compare_bands(const XyCurve& reference, const XyCu
     double compared = 0.0;
     double sum = 0.0;
     for (std::size_t k = 0; k < loading.x.size(); ++k) {
-      if (!(loading.x[k] >= from && loading.x[k] <= to && std::abs(loading.y[k]) > least)) continue;
+      if (!(loading.x[k] >= from && loading.x[k] <= to)) continue;
       ++rows;
+      if (!(std::abs(loading.y[k]) > least)) continue;
       const double distance = value_at(own_loading, loading.x[k]) / loading.y[k] - 1.0;
       if (!std::isfinite(distance)) continue;
       ++compared;

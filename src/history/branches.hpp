@@ -45,7 +45,7 @@ struct BranchComparison {
   double reversal = 0.0;  ///< x of the reversal of the reference, of the end of its loading, or of the end of the band
   double area_error = 0.0;  ///< CurveDifference::area_error of the loading up to there
   double peak_error = 0.0;  ///< CurveDifference::peak_error of the loading up to there
-  double coverage = 1.0;    ///< share of the reference's loading on which the curve could be compared
+  double coverage = 1.0;    ///< share of the reference's loading on which the curve was compared
   double slope = 0.0;       ///< slope of the curve's unloading
   double reference_slope = 0.0;
   double residual = 0.0;  ///< x at which the force of the curve's unloading vanishes
@@ -64,9 +64,9 @@ struct BranchComparison {
 
 /// Compares a curve with a reference in bands of x, at the rows of the reference. Loading means the first loading of
 /// both curves. An unloading belongs to the band of its reversal, and is compared with the unloading of the curve whose
-/// reversal lies within 1 % of it. The coverage is the share of the loading rows that the curve reaches.
+/// reversal lies within 1 % of it. The coverage is the share of the loading rows that are compared.
 /// @param bands  ends of the bands in units of x, ascending, at least two
-/// @param least  loading rows with |reference| <= least are left out
+/// @param least  loading rows with |reference| <= least are not compared
 [[nodiscard]] std::vector<BranchComparison> compare_bands(const XyCurve& reference, const XyCurve& curve,
                                                           std::span<const double> bands, double least);
 

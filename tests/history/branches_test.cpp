@@ -146,9 +146,9 @@ TEST(Branches, BandsMeasureTheRowsOfTheReferenceThatAreLargeEnough) {
   EXPECT_DOUBLE_EQ(line_from(1.0, 0.0).largest, 4.0);
   EXPECT_DOUBLE_EQ(line_from(2.0, 0.0).largest, 0.5) << "a band has its first row";
   const BranchComparison line = line_from(1.0, 2.0);
-  EXPECT_DOUBLE_EQ(line.largest, 0.25) << "rows with y up to the least are left out";
+  EXPECT_DOUBLE_EQ(line.largest, 0.25) << "rows with y up to the least are not compared";
   EXPECT_DOUBLE_EQ(line.rms, 0.25);
-  EXPECT_DOUBLE_EQ(line.coverage, 2.0 / 3.0);
+  EXPECT_DOUBLE_EQ(line.coverage, 2.0 / 5.0) << "of all rows: two are too small, the curve ends before one";
   EXPECT_TRUE(std::isnan(line.unloading));
   EXPECT_TRUE(std::isnan(line_from(5.0, 0.0).largest)) << "the curve does not come there";
   EXPECT_DOUBLE_EQ(line_from(5.0, 0.0).coverage, 0.0);

@@ -158,7 +158,7 @@ constexpr const char* k_about_bands =
     "Where a table has columns in percent: largest and root mean square of |model - reference|/reference over the\n"
     "rows of the reference's first loading within the band of x; unloading: largest |model - reference| while\n"
     "unloading and reloading from the band, over the largest reference before; coverage: share of the loading rows "
-    "reached.\n";
+    "compared,\nwhich the curve reaches and in which the reference is not too small.\n";
 constexpr const char* k_about_values =
     "Values as the laws give them; where the source prints one, whether it is the same rounded to as many digits.\n"
     "A hyphen: there is none.\n";

@@ -176,13 +176,13 @@ Keys comparison_table_keys() {
 }
 
 Keys quantity_keys() {
-  return {
-      required(key_of(Kind::text, "name", "name of the quantity", "\"axial force\"")),
-      required(key_of(Kind::text, "y", "formula of the ordinate", k_example_y)),
-      required(key_of(Kind::text, "reference", "formula of the columns of the points", "\"force\"")),
-      key_of(Kind::text, "least", "loading with y up to this is not measured in bands; a formula of the run's numbers",
-             "\"1e-3 * Y / E\""),
-      measures_key()};
+  return {required(key_of(Kind::text, "name", "name of the quantity", "\"axial force\"")),
+          required(key_of(Kind::text, "y", "formula of the ordinate", k_example_y)),
+          required(key_of(Kind::text, "reference", "formula of the columns of the points", "\"force\"")),
+          key_of(Kind::text, "least",
+                 "loading rows of the reference up to this are not compared in bands; a formula of the run's numbers",
+                 "\"1e-3 * Y / E\""),
+          measures_key()};
 }
 
 Keys comparison_keys() {

@@ -797,8 +797,8 @@ TEST(ReadyAtlas, HoldsModelCelAgainstFiniteElements) {
       if (!row.label.ends_with(": cel")) continue;
       ++cases;
       rms[name] = line.rms;
-      EXPECT_DOUBLE_EQ(line.coverage, 1.0) << name;
       const bool is_lateral = row.quantity == "lateral force";
+      EXPECT_GE(line.coverage, is_lateral ? 0.84 : 1.0) << name << ": the smallest lateral forces are not compared";
       EXPECT_LT(line.largest, is_lateral ? 0.27 : 0.16) << name;
       EXPECT_LT(line.rms, is_lateral ? 0.17 : 0.08) << name;
       if (std::isfinite(line.unloading)) {
