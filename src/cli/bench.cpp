@@ -144,8 +144,14 @@ void add_bench_command(CLI::App& app, Action& action) {
   command->add_option("SCENE", options->scenes, "Scenes of the list, or scenario files [all of the list]");
   command->add_option("--scenes", options->list,
                       "List of scenes [scenarios/bench/scenes.toml, or that of the program]");
-  command->add_option("--integrator", options->integrators, "Integrators to measure [auto and all there are]");
+  command->add_option("--integrator", options->integrators, "Integrators to measure [auto and all there are]")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_option("--rtol", options->tolerances, "Relative tolerances, 1e-15 to 0.1 [1e-2 to 1e-13]")
+      ->type_name("FLOAT,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::Range(1e-15, 0.1))
       ->check(is_no_nan());
   command->add_flag("--profile", options->profiles, "Also tell where the time goes");
@@ -158,7 +164,7 @@ void add_bench_command(CLI::App& app, Action& action) {
       ->excludes("--against-fe");
   command->add_option("-o,--output", options->output,
                       "Folder of table, CSV and figures [plots in a checkout, else bench]");
-  command->footer("Example: monograin bench mdr-die-50 --integrator auto cvode-bdf -o bench");
+  command->footer("Example: monograin bench mdr-die-50 --integrator auto,cvode-bdf -o bench");
   command->callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 

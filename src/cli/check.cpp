@@ -105,10 +105,7 @@ void add_check_command(CLI::App& app, Action& action) {
       ->add_option("FILE", options->files,
                    "Scenarios, sweeps, sensitivities, calibrations, designs, figure definitions (TOML)")
       ->required();
-  command->add_option("--set", options->overrides, "Override a key of scenarios: key=value")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
+  add_overrides(*command, options->overrides);
   command->footer("Example: monograin check scenarios/die.toml");
   command->callback([options, &action] { action = [options] { return check(*options); }; });
 }

@@ -126,8 +126,7 @@ std::string folder_name(const CheckedScenario& scenario) {
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
   command.add_option("--set", overrides, "Override a key: key=value, e.g. material.yield_stress='30 MPa'")
       ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
+      ->allow_extra_args(false);
 }
 
 int exit_code_of(RunStatus status) {

@@ -86,7 +86,9 @@ void add_stress_command(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber)
       ->type_name("TIME");
   command->add_option("--model", options->models, "Draw scenes of these models only, a sequence of their own [all]")
-      ->type_name("NAME");
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_option("--seed", options->seed, "Which sequence of scenes, a number from 0 [1]")
       ->check(CLI::NonNegativeNumber);
   command->add_option("-n,--scenes", options->scenes, "End after so many scenes [none: when the time is up]")
@@ -96,7 +98,7 @@ void add_stress_command(CLI::App& app, Action& action) {
   command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
       ->check(CLI::Range(1, 1024));
   command->add_option("-o,--output", options->output, "Folder of the report and the failing scenes [runs/stress]");
-  command->footer("Example: monograin stress --time 20s --seed 7 --model hertz mdr");
+  command->footer("Example: monograin stress --time 20s --seed 7 --model hertz,mdr");
   command->callback([options, &action] { action = [options] { return stress(*options); }; });
 }
 

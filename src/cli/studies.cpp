@@ -310,10 +310,11 @@ void add_plot_command(CLI::App& app, Action& action) {
   command->add_option("--y", options->columns.y,
                       "Column over it [force of the driven walls; the largest first force of a sweep]");
   command->add_option("--unit", options->columns.unit, "Unit of the column over it, e.g. kN [that of the file]");
-  command->add_option(
-      "--data", options->data,
-      "File of measured data to draw as points, read as by monograin data; its columns are found by "
-      "the dimensions of the axes. The folder of a calibration: its data without what the machine adds");
+  command
+      ->add_option("--data", options->data,
+                   "File of measured data to draw as points, read as by monograin data; its columns are found by "
+                   "the dimensions of the axes. The folder of a calibration: its data without what the machine adds")
+      ->allow_extra_args(false);
   command->add_flag(
       "--vtk", options->writes_vtk,
       "Write particle and walls at up to 200 instants for ParaView instead [folder vtk in that of the run]");

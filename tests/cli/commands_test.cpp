@@ -711,6 +711,18 @@ TEST_F(Commands, CalibrateFitsTheReadyExample) {
   }
 }
 
+TEST_F(Commands, TakeOptionsBeforeFiles) {
+  write_text(path("small.toml"), k_small);
+  for (const char* arguments :
+       {"run --set output.points=5 --set output.points=3 small.toml -o a", "check --set output.points=5 small.toml",
+        "run small.toml -o b", "plot --data b/history.csv a -o c.svg", "stress --model hertz,mdr small.toml",
+        "bench --integrator direct --rtol 1e-4,1e-5 small.toml -o d"}) {
+    EXPECT_EQ(monograin(arguments).code, 0) << arguments << ": " << text("stderr.txt");
+  }
+  EXPECT_EQ(nlohmann::json::parse(text("a/run.json"))["scenario"]["overrides"],
+            (std::vector<std::string>{"output.points=5", "output.points=3"}));
+}
+
 TEST_F(Commands, CalibrateComparesFits) {
   const std::string ready = MONOGRAIN_SOURCE_DIR "/scenarios/calibrate/";
   // Without its modulus free the law is further from the data.
@@ -912,7 +924,7 @@ constexpr const char* k_bench_scenes = " --scenes '" MONOGRAIN_SOURCE_DIR "/scen
 TEST_F(Commands, BenchMeasuresNamedScenesAndScenarioFiles) {
   write_text(path("small.toml"), k_small);
   const Outcome outcome =
-      monograin(std::string("bench mdr-die-50 small.toml --integrator auto cvode-bdf --rtol 1e-5 --profile -o out") +
+      monograin(std::string("bench mdr-die-50 small.toml --integrator auto,cvode-bdf --rtol 1e-5 --profile -o out") +
                 k_bench_scenes);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   for (const char* words : {"| mdr-die-50 ", "| small ", "| cvode-bdf ", "## Where the time goes"}) {

@@ -55,9 +55,9 @@ steps = [{ displacement = 0.2, rate = 0.2 }, { hold = true, duration = 7 }]
 }
 
 TEST_F(StressCommand, DrawsScenesOfNamedModelsOnly) {
-  ASSERT_EQ(monograin("stress --model nonlocal hertz --seed 5 --scenes 6 --time 2min -o out").code, 0);
+  ASSERT_EQ(monograin("stress --model nonlocal,hertz --seed 5 --scenes 6 --time 2min -o out").code, 0);
   const std::string report = text("out/report.txt");
-  EXPECT_NE(report.find("seed 5 of hertz nonlocal: 6 scenes"), std::string::npos) << report;
+  EXPECT_NE(report.find("seed 5 of hertz,nonlocal: 6 scenes"), std::string::npos) << report;
   EXPECT_EQ(report.find("mdr"), std::string::npos) << report;
 }
 

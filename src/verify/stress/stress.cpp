@@ -67,7 +67,7 @@ CheckedScene check_drawn(const StressOptions& options, std::uint64_t index, cons
 std::string names_of(const DrawnModels& models) {
   std::vector<std::string_view> names;
   for (const Model* model : models) names.push_back(model->name);
-  return fmt::format("{}", fmt::join(names, " "));
+  return fmt::format("{}", fmt::join(names, ","));
 }
 
 /// Name of a sequence of scenes, for readers.

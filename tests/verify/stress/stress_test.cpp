@@ -75,7 +75,7 @@ TEST(StressReports, SayHowAFailingSceneIsDrawnAgain) {
   report.failures.emplace_back().index = 12;
   EXPECT_NE(report.text().find("monograin stress --seed 7 --first 12 --scenes 1"), std::string::npos);
   report.drawn_from = {find_model("mdr"), find_model("hertz")};
-  EXPECT_NE(report.text().find("monograin stress --model hertz mdr --seed 7 --first 12 --scenes 1"), std::string::npos);
+  EXPECT_NE(report.text().find("monograin stress --model hertz,mdr --seed 7 --first 12 --scenes 1"), std::string::npos);
 }
 
 /// The history of a run with one number changed.
