@@ -413,9 +413,8 @@ struct PathIntegrals {
     const std::string expected = word(a, rows_a, k, column_a);
     const std::string found = word(b, rows_b, k, column_b);
     if (expected == found) continue;
-    if (rows_a.empty()) return fmt::format("has {} where nothing is expected", found);
-    return fmt::format("has {} instead of {} at {} = {:.6g}", found, expected, x,
-                       a.at(rows_a[std::min(k, rows_a.size() - 1)], x_a));
+    const double place = k < rows_a.size() ? a.at(rows_a[k], x_a) : b.at(rows_b[k], *b.find(x));
+    return fmt::format("has {} instead of {} at {} = {:.6g}", found, expected, x, place);
   }
   return {};
 }

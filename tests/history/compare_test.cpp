@@ -320,7 +320,7 @@ TEST(CompareTables, ComparesTheOrderOfWordsWhereTheRowsDiffer) {
   EXPECT_EQ(gaps(regimes({0, 1, 2}, {0, 1, 2}), regimes({0, 0.5, 2}, {0, 1, 1})),
             Sentences{"regime has nothing instead of 'yielded' at time[s] = 2"});
   EXPECT_EQ(gaps(regimes({0, 1}, {0, 1}), regimes({0, 0.5, 2}, {0, 1, 2})),
-            Sentences{"regime has 'yielded' instead of nothing at time[s] = 1"});
+            Sentences{"regime has 'yielded' instead of nothing at time[s] = 2"});
 }
 
 Table events(const std::vector<double>& times, const std::vector<double>& names) {
