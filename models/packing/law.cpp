@@ -133,7 +133,7 @@ Law make_law(const Parameters& given) {
   require(p.poisson_ratio > -1.0 && p.poisson_ratio < 0.5, "Poisson's ratio has to lie between -1 and 0.5");
   require(is_positive(p.shear_exponent), "f_G has to be positive");
   require(std::isfinite(p.stretch_exponent) && p.stretch_exponent >= p.shear_exponent,
-          "f_E is below f_G, which gives the modulus a pole");
+          "f_E has to be at least f_G: below it, the modulus has a pole");
   require(p.critical_porosity > 0.0 && p.critical_porosity < 1.0, "the critical porosity has to lie between 0 and 1");
   require(is_positive(p.coupling_factor), "c1 has to be positive");
   require(is_positive(p.strain_offset), "c2 has to be positive");

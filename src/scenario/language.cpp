@@ -268,9 +268,14 @@ std::vector<KeySpec> loading_keys(const Model& model) {
   };
 }
 
+/// Events with which a step or the run ends anyway: no step can wait for them.
+constexpr std::array<string_view, 3> k_ends{"step-end", "until-met", "limit"};
+
 KeySpec event_key(const Model& model) {
   std::vector<string_view> events;
-  for (const Term& event : model.events) events.push_back(event.name);
+  for (const Term& event : model.events) {
+    if (std::ranges::find(k_ends, event.name) == k_ends.end()) events.push_back(event.name);
+  }
   return {.name = "event",
           .meaning = "name of an event",
           .kind = Kind::choice,

@@ -91,7 +91,8 @@ TEST(PackingRules, RefuseParametersThatMakeNoLaw) {
   const auto faults = [](const std::string& material, const std::string& options) {
     return faults_of(packing(k_ramp, material, options));
   };
-  EXPECT_EQ(faults("", "f_E = 0.1"), (Lines{"die.toml:5:7: f_E is below f_G, which gives the modulus a pole"}));
+  EXPECT_EQ(faults("", "f_E = 0.1"),
+            (Lines{"die.toml:5:7: f_E has to be at least f_G: below it, the modulus has a pole"}));
   EXPECT_EQ(faults("poisson_ratio = 0.5", ""),
             (Lines{"die.toml:3:17: poisson_ratio = 0.5: out of range; expected a number above -1 and below 0.5"}));
   EXPECT_EQ(faults("", "Z_1 = 3.9"), (Lines{"die.toml:5:7: Z_1 is below Z_c: contacts would be lost in compaction"}));

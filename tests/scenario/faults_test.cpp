@@ -278,14 +278,13 @@ const std::vector<FaultRow> k_rows{
              13,
              "duration = 1\nuntil = { stress_axial = 0 }",
              {"die.toml:14:11: key 'stress_axial' is not used by model 'mdr'"}},
-    FaultRow{
-        "UntilUnknownEvent",
-        13,
-        "duration = 1\nuntil = { event = \"yeild\" }",
-        {"die.toml:14:19: event = \"yeild\": expected one of contact-made, contact-lost, dent-touched, yield, "
-         "load-reversal, retreat, reload, "
-         "stick, peel, follow, pull-off, force-extremum, growth-on, growth-off, caps-intersect, step-end, until-met, "
-         "singular-growth, volume-limit, limit; did you mean 'yield'?"}},
+    FaultRow{"UntilUnknownEvent",
+             13,
+             "duration = 1\nuntil = { event = \"yeild\" }",
+             {"die.toml:14:19: event = \"yeild\": expected one of contact-made, contact-lost, dent-touched, yield, "
+              "load-reversal, retreat, reload, "
+              "stick, peel, follow, pull-off, force-extremum, growth-on, growth-off, caps-intersect, "
+              "singular-growth, volume-limit; did you mean 'yield'?"}},
     FaultRow{"CycleOfZero",
              12,
              "cycle = 0\nsteps = [{ hold = true, duration = 1 }]\n[[loading.steps]]\nhold = true",
