@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 # Colours of Okabe and Ito, which colour-blind readers can distinguish.
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 _STYLES = {"loading": "-", "unloading": "--", "reloading": ":"}
+# Sparse filled marks of the curves after the first one, which differ in grey print, too.
+_CURVE_MARKS = ("", "o", "^", "s", "D", "p", "v")
 # Each event has the next symbol, colour and size. Events at one point remain visible, as their sizes differ.
 _SYMBOLS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h")
 _SIZES = (5.0, 7.0, 9.0)
@@ -136,8 +138,10 @@ def _draw(
         y = _values(run.history, panel, column)
         colour = _COLOURS[(used + k) % len(_COLOURS)]
         name = ": ".join(filter(None, (label, legend)))
+        look = {"color": colour, "marker": _CURVE_MARKS[(used + k) % len(_CURVE_MARKS)], "markersize": 3.5}
         for i, (phase, piece) in enumerate(phases):
-            axes.plot(x[piece], y[piece], _STYLES[phase], color=colour, label=name if i == 0 else None)
+            text = name if i == 0 else None
+            axes.plot(x[piece], y[piece], linestyle=_STYLES[phase], markevery=0.15, label=text, **look)
     for name, rows in _events(run.events).items():
         points = [
             (run.events[sheet.column][row] / sheet.scale, _values(run.events, panel, column)[row])
@@ -150,8 +154,8 @@ def _draw(
         if points:
             text = None if name in _marks_in([axes]) else name
             symbol, colour, size = marks[name]
-            style = {"marker": symbol, "color": colour, "markersize": size, "linestyle": "None"}
-            axes.plot(*zip(*points), **style, markerfacecolor="none", label=text, gid=_EVENT + name)
+            look = {"marker": symbol, "color": colour, "markersize": size, "linestyle": "None"}
+            axes.plot(*zip(*points), **look, markerfacecolor="none", label=text, gid=_EVENT + name)
     axes.set_xlabel(sheet.label)
     axes.set_ylabel(panel.label)
     if len(axes.get_legend_handles_labels()[1]) > 1:

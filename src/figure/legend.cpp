@@ -20,7 +20,7 @@ constexpr std::array k_colours{0x0072B2u, 0xD55E00u, 0x009E73u, 0xCC79A7u, 0xE69
 
 constexpr double k_first_width = 2.0;
 constexpr double k_last_width = 1.5;
-constexpr double k_palest = 0.55;          ///< share of white in the last run's shade
+constexpr double k_palest = 0.3;           ///< share of white in the last run's shade
 constexpr double k_reloading_width = 2.2;  ///< of the dots, over that of the line
 /// Shares of black, and of white, in colours that come again.
 constexpr double k_darker = 0.35;
@@ -28,8 +28,10 @@ constexpr double k_paler = 0.5;
 
 /// Open points (circle, square, triangles, diamond, pentagon), then crosses, and only then filled points.
 constexpr std::array k_points{6, 4, 8, 10, 12, 14, 2, 1, 3, 7, 5, 9, 11, 13, 15};
-/// Filled points: circle, triangle, square, diamond, pentagon, triangle.
+/// Filled points: circle, triangle, square, diamond, pentagon, triangle. The open ones have the numbers before these.
 constexpr std::array k_marks{7, 9, 5, 13, 15, 11};
+/// Colours that differ; a multiple of the number of marks.
+constexpr std::size_t k_shades = 3 * k_colours.size();
 
 /// Events of models. The place of a name gives its symbol, so that a new name belongs at the end; names beside these
 /// share the symbol after the last.
@@ -122,20 +124,22 @@ Palette::Palette(const std::vector<RunCurves>& runs) : run_count_(runs.size()) {
   }
 }
 
-Stroke Palette::line(std::size_t run, unsigned colour, std::size_t mark) const {
+Stroke Palette::line(std::size_t run, unsigned colour, std::size_t mark, bool is_open) const {
   const double share = run_count_ > 1 ? static_cast<double>(run) / static_cast<double>(run_count_ - 1) : 0.0;
   return {colours_tell_runs() ? colour : mixed_with(255.0, colour, k_palest * share),
-          std::lerp(k_first_width, k_last_width, share), mark};
+          std::lerp(k_first_width, k_last_width, share), mark, is_open};
 }
 
 Stroke Palette::contact_line(std::size_t run, std::string_view contact) const {
   const auto place = static_cast<std::size_t>(std::ranges::find(contacts_, contact) - contacts_.begin());
-  const std::size_t number = colours_tell_runs() ? run : place;
-  return line(run, colour_of(number), number);
+  // Where colours come again, the next marks go with them.
+  if (colours_tell_runs()) return line(run, colour_of(run), run + run / k_shades, false);
+  return line(run, colour_of(place), run_count_ > 1 ? run + 1 : place, run_count_ > 1 && place > 0);
 }
 
 Stroke Palette::particle_line(std::size_t run) const {
-  return colours_tell_runs() ? line(run, colour_of(run), run) : line(run, k_neutral_colour, 0);
+  if (colours_tell_runs()) return contact_line(run, contacts_.front());
+  return line(run, k_neutral_colour, run_count_ > 1 ? run + 1 : 0, false);
 }
 
 unsigned colour_of(std::size_t place) noexcept {
@@ -167,7 +171,8 @@ std::string phase_line(const Stroke& stroke, Phase phase) {
 std::string dashed_line(const Stroke& stroke, std::string_view dash) {
   const std::string look = fmt::format("lc rgb '#{:06X}' lw {:.3g} dt {}", stroke.colour, stroke.width, dash);
   if (stroke.mark == 0) return "with lines " + look;
-  return fmt::format("with linespoints {} pt {} ps 0.45 pn 7", look, k_marks[(stroke.mark - 1) % k_marks.size()]);
+  const int point = k_marks[(stroke.mark - 1) % k_marks.size()] - (stroke.is_open ? 1 : 0);
+  return fmt::format("with linespoints {} pt {} ps 0.45 pn 7", look, point);
 }
 
 std::string event_points(std::string_view name) {

@@ -14,7 +14,8 @@ namespace monograin::figure {
 struct Stroke {
   unsigned colour;  ///< 0xRRGGBB
   double width;
-  std::size_t mark;  ///< number of the sparse points on the line, which also differ in grey print; 0: none
+  std::size_t mark;      ///< number of the sparse points on the line, which also differ in grey print; 0: none
+  bool is_open = false;  ///< the points are open
 };
 
 /// gnuplot's line of a phase: loading solid, unloading dashed, reloading as dots wider than the line and without marks,
@@ -23,8 +24,9 @@ struct Stroke {
 /// gnuplot's line with a dash type of its own.
 [[nodiscard]] std::string dashed_line(const Stroke& stroke, std::string_view dash);
 
-/// Gives each contact class a colour and marks, and each run a shade and a width. If all runs together have one class,
-/// runs differ in colour and marks.
+/// Gives each contact class of one run a colour and marks. With several runs, each run has marks, a shade and a width,
+/// and each class a colour; marks of the first class are filled, those of others open. If all runs together have one
+/// class, runs differ in colour and marks.
 class Palette {
  public:
   explicit Palette(const std::vector<RunCurves>& runs);
@@ -36,7 +38,7 @@ class Palette {
   [[nodiscard]] Stroke particle_line(std::size_t run) const;
 
  private:
-  [[nodiscard]] Stroke line(std::size_t run, unsigned colour, std::size_t mark) const;
+  [[nodiscard]] Stroke line(std::size_t run, unsigned colour, std::size_t mark, bool is_open) const;
   [[nodiscard]] bool colours_tell_runs() const noexcept { return run_count_ > 1 && contacts_.size() == 1; }
 
   std::size_t run_count_;

@@ -148,8 +148,10 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
   double highest = 0.0;
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const bool is_determined = sets[s].errors->uncertainty.is_determined[k];
-    panel.x.names.emplace_back(is_determined ? " " : "?");
-    figure::ChartArea bar{.legend = figure::short_text(sets[s].name), .colour = k_colours[s % k_colours.size()]};
+    // The number stands in the legend, too: colours alone do not tell bars apart in grey print.
+    panel.x.names.push_back(fmt::format("{}{}", s + 1, is_determined ? "" : "?"));
+    figure::ChartArea bar{.legend = fmt::format("{} {}", s + 1, figure::short_text(sets[s].name)),
+                          .colour = k_colours[s % k_colours.size()]};
     if (is_determined) {
       const double error = 100.0 * relative_error(plan, *sets[s].errors, k);
       const double place = static_cast<double>(s) + 1.0;
