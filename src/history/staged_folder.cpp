@@ -302,11 +302,13 @@ void StagedFolder::make_staged() {
     if (lock_ >= 0) close(lock_);
     lock_ = LockedFolder(path(), LOCK_EX).release();
   } while (!fs::exists(path()));
-  // mkdtemp() lets only the owner in: gives the folder the permissions of any new folder.
+  // mkdtemp() lets only the owner in: gives the folder the permissions of any new folder. To ask for the mask of the
+  // process would change it for an instant, in which another thread may write files.
+  const fs::path sample = path() / "sample";
   struct stat made = {};
-  const mode_t mask = umask(0);
-  umask(mask);
-  if (stat(path().c_str(), &made) == 0) chmod(path().c_str(), (made.st_mode & 07000U) | (0777U & ~mask));
+  if (mkdir(sample.c_str(), 0777) == 0 && stat(sample.c_str(), &made) == 0)
+    chmod(path().c_str(), made.st_mode & 07777U);
+  rmdir(sample.c_str());
 }
 
 /// @throws std::runtime_error if a folder or a file of the user has the name of a file of the result

@@ -290,6 +290,12 @@ TEST_F(UserFiles, AnOldFolderThatAKilledRunDidNotRemoveGivesBackWhatIsNotItsOwn)
   EXPECT_FALSE(fs::exists(path("r/figure.svg")));
 }
 
+TEST_F(UserFiles, AFolderHasThePermissionsThatTheMaskLeaves) {
+  ASSERT_EQ(shell("umask 027; monograin run '" MONOGRAIN_SOURCE_DIR "/scenarios/hertz.toml' -o masked").code, 0);
+  EXPECT_EQ(fs::status(path("masked")).permissions(),
+            fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec);
+}
+
 TEST_F(UserFiles, ARepeatedRunKeepsTheModeOfItsFolder) {
   ASSERT_EQ(monograin("run small.toml -o r").code, 0);
   fs::permissions(path("r"), fs::perms::owner_all);
