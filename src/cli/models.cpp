@@ -13,6 +13,7 @@
 #include "catalogue.hpp"
 #include "cli/commands.hpp"
 #include "cli/terminal.hpp"
+#include "history/run.hpp"
 #include "scenario/model_input.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/schema.hpp"
@@ -127,7 +128,11 @@ void print_parameters(const CheckedScenario& scenario) {
 
 /// Prints the references of the named models, or of all models if none is named: each once, in the order of the keys.
 int run_cite(const std::vector<std::string>& names) {
-  std::map<std::string_view, const Citation*> entries;
+  // The program itself is to be cited with the sources of any law, in the version that has computed with them.
+  Citation own = references::k_monograin;
+  const std::string title = fmt::format("{}, version {}", own.title, version());
+  own.title = title;
+  std::map<std::string_view, const Citation*> entries{{own.key, &own}};
   const auto add = [&entries](const Model& model) {
     for (const Citation* reference : model.references) entries.emplace(reference->key, reference);
   };
@@ -209,7 +214,7 @@ void add_models_command(CLI::App& app, Action& action) {
 
 void add_cite_command(CLI::App& app, Action& action) {
   auto names = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = app.add_subcommand("cite", "Print the references of models as BibTeX");
+  CLI::App* command = app.add_subcommand("cite", "Print the references of models, and of the program, as BibTeX");
   command->add_option("NAME", *names, "Models; all of them if none is named");
   command->footer("Example: monograin cite mdr > mdr.bib");
   command->callback([names, &action] { action = [names] { return run_cite(*names); }; });

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "cli/command_test.hpp"
+#include "history/run.hpp"
 #include "history/table.hpp"
 #include "support/svg_figure.hpp"
 
@@ -524,13 +525,14 @@ std::vector<std::string> keys_of(const std::string& bibtex) {
   return keys;
 }
 
-TEST_F(Commands, CitePrintsTheReferencesOfModels) {
+TEST_F(Commands, CitePrintsTheReferencesOfModelsAndOfTheProgram) {
   const Outcome mdr = monograin("cite mdr");
   EXPECT_EQ(mdr.code, 0) << mdr.err;
-  EXPECT_EQ(keys_of(mdr.out), (std::vector<std::string>{"zunker2024", "zunker2024b"}));
+  EXPECT_EQ(keys_of(mdr.out), (std::vector<std::string>{"monograin", "zunker2024", "zunker2024b"}));
+  EXPECT_NE(mdr.out.find("under contact, version " + std::string(version()) + "}},"), std::string::npos) << mdr.out;
   EXPECT_NE(mdr.out.find("  doi = {10.1016/j.jmps.2023.105492}\n"), std::string::npos) << mdr.out;
   EXPECT_EQ(keys_of(monograin("cite packing hertz mdr").out),
-            (std::vector<std::string>{"hertz1882", "nezamabadi2022", "zunker2024", "zunker2024b"}));
+            (std::vector<std::string>{"hertz1882", "monograin", "nezamabadi2022", "zunker2024", "zunker2024b"}));
 }
 
 TEST_F(Commands, CitePrintsTheReferencesOfAllModelsEachOnce) {
