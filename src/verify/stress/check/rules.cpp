@@ -23,8 +23,6 @@ namespace {
 
 // Error over rtol for each step of a long program: errors of work have one sign and add up (measured: 16).
 constexpr double k_rtol_multiple_of_step = 25.0;
-// rtol at which the work of runs was counted.
-constexpr double k_counted_rtol = 1e-8;
 // Error of the direct form's work over rtol (measured: 0.0014).
 constexpr double k_direct_work = 1e-2;
 // Events of one step of the program; fifty times as many as scenes show.
@@ -35,7 +33,7 @@ constexpr std::size_t k_most_events_between_ends = 10;
 // direct runs need 3 or fewer, 99 % 102, the worst 159. Of the integrated ones half need 7 to 162, by integrator, 99 %
 // 103 to 2,214, the worst 3,566.
 constexpr long k_most_work_direct = 1000;
-constexpr double k_most_work_integrated = 20000.0;
+constexpr long k_most_work_integrated = 20000;
 // Share of the rest of a force's ramp that check_hold() samples ahead, and of the largest force that is small beside
 // it.
 constexpr double k_little = 1e-3;
@@ -399,9 +397,7 @@ void check_work(const Run& run, Violations& found) {
   if (!suits_stiff_equations(run.integrator.used)) return;
   // The run has failed because of its work; check_end() judges whether it may.
   if (run.record.failure == Failure::too_much_work) return;
-  // The number of steps of a method of order 4 grows as rtol^(-1/4).
-  const double finer = std::pow(std::max(1.0, k_counted_rtol / run.scenario.numerics.rtol), 0.25);
-  const long most = run.integrator.is_direct() ? k_most_work_direct : std::lround(k_most_work_integrated * finer);
+  const long most = run.integrator.is_direct() ? k_most_work_direct : k_most_work_integrated;
   const Statistics& done = run.record.statistics;
   const long work = done.rhs_evaluations + done.guard_evaluations;
   const auto shown =
