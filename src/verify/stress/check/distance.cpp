@@ -133,6 +133,29 @@ std::pair<double, double> values_at(const ColumnPair& pair, std::size_t a, std::
   return {x, y};
 }
 
+/// Change of a value that follows from a contact's column when the overlap changes by a length [m]. The slope comes
+/// from the nearest rows whose overlap differs by more than that length, so that a jump does not count.
+/// @return 0 if the column belongs to no contact with an overlap
+double change_with_overlap(const ColumnPair& pair, std::size_t row, double length) {
+  const Table& table = pair.first;
+  const std::string& name = table.columns()[pair.column].name;
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos || !(length > 0.0)) return 0.0;
+  const auto overlap = table.find(name.substr(0, dot) + ".overlap");
+  if (!overlap) return 0.0;
+  double steepest = 0.0;
+  const auto has_sampled = [&](std::size_t beside) {
+    const double way = std::abs(table.at(beside, *overlap) - table.at(row, *overlap));
+    if (!(way > length)) return false;
+    steepest = std::max(
+        steepest, std::abs(pair.smooth(table.at(beside, pair.column)) - pair.smooth(table.at(row, pair.column))) / way);
+    return true;
+  };
+  for (std::size_t beside = row; beside-- > 0 && !has_sampled(beside);) continue;
+  for (std::size_t beside = row + 1; beside < table.row_count() && !has_sampled(beside); ++beside) continue;
+  return steepest * length;
+}
+
 }  // namespace
 
 std::string_view kind_of(const Column& column) {
@@ -166,25 +189,6 @@ double deepest_overlap(const Table& table) {
   return deepest;
 }
 
-double change_with_overlap(const Table& table, std::size_t row, std::size_t column, double length,
-                           const std::function<double(double)>& value) {
-  const std::string& name = table.columns()[column].name;
-  const std::size_t dot = name.rfind('.');
-  if (dot == std::string::npos || !(length > 0.0)) return 0.0;
-  const auto overlap = table.find(name.substr(0, dot) + ".overlap");
-  if (!overlap) return 0.0;
-  double steepest = 0.0;
-  const auto has_sampled = [&](std::size_t beside) {
-    const double way = std::abs(table.at(beside, *overlap) - table.at(row, *overlap));
-    if (!(way > length)) return false;
-    steepest = std::max(steepest, std::abs(value(table.at(beside, column)) - value(table.at(row, column))) / way);
-    return true;
-  };
-  for (std::size_t beside = row; beside-- > 0 && !has_sampled(beside);) continue;
-  for (std::size_t beside = row + 1; beside < table.row_count() && !has_sampled(beside); ++beside) continue;
-  return steepest * length;
-}
-
 Distance distance_at(const Table& first, const Table& second,
                      const std::vector<std::pair<std::size_t, std::size_t>>& rows, const Negligible& nothing,
                      const Magnification& larger) {
@@ -200,8 +204,7 @@ Distance distance_at(const Table& first, const Table& second,
       const double apart = pair.apart(x, y);
       if (!(apart > worst.value * pair.unit())) continue;
       // A quantity that is steep over the overlap is known only as well as the overlap.
-      const auto smooth = [&pair](double of) { return pair.smooth(of); };
-      const double value = (apart - change_with_overlap(first, a, c, nothing.length, smooth)) / pair.unit();
+      const double value = (apart - change_with_overlap(pair, a, nothing.length)) / pair.unit();
       if (value > worst.value) worst = {value, first.columns()[c].name, first.at(a, 0)};
     }
   }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -37,13 +36,6 @@ struct Distance {
 
 /// Largest overlap of all contacts [m]; negative, a gap, if no contact is made.
 [[nodiscard]] double deepest_overlap(const Table& table);
-
-/// Change of a contact's column, or of a value that follows from it, when the overlap changes by a length [m]. The
-/// slope comes from the nearest rows whose overlap differs by more than that length, so that a jump does not count.
-/// @param value  the value that follows from an entry of the column
-/// @return 0 if the column belongs to no contact with an overlap
-[[nodiscard]] double change_with_overlap(const Table& table, std::size_t row, std::size_t column, double length,
-                                         const std::function<double(double)>& value = std::identity());
 
 /// Differences that do not count: shares of a particle's own units, as an absolute tolerance or round-off.
 struct Negligible {

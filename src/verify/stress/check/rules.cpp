@@ -68,8 +68,8 @@ double energy_floor(const Run& run) {
   return std::max(k_stress_round_off * stiffest_modulus(run), negligible) * std::pow(run.scenario.radius, 3);
 }
 
-/// Round-off of the force [N] of a contact that unloads: that of its overlap times its unloading stiffness, which does
-/// not show in a curve along which the particle grows. 0 without a column for the contact radius.
+/// Round-off of the force [N] of a contact that unloads: that of its overlap, a difference of lengths of the order of
+/// R0, times its unloading stiffness. 0 without a column for the contact radius.
 double force_floor(const Run& run, std::size_t row, const std::string& wall) {
   const auto contact_radius = run.record.history.find(wall + ".contact_radius");
   if (!contact_radius) return 0.0;
@@ -216,15 +216,8 @@ void check_program(const Run& run, Violations& found) {
     const std::size_t last_row = table.row_count() - 1;
     const double last = table.at(last_row, column);
     const double scale = std::max(std::abs(target), largest_magnitude(table, column));
-    // Round-off is that of strains of order one, or of lengths of the order of R0.
-    const double unit = scene.classes.empty() ? 1.0 : name->ends_with("displacement") ? run.scenario.radius : 0.0;
-    // The force of a shallow contact is known only as well as its overlap, a difference of such lengths.
-    double by_overlap = 0.0;
-    if (name->ends_with("force")) {
-      by_overlap = std::max(change_with_overlap(table, last_row, column, k_stress_round_off * run.scenario.radius),
-                            force_floor(run, last_row, channel.name));
-    }
-    if (std::abs(last - target) <= own_tolerance(run) * scale + k_stress_round_off * unit + by_overlap) continue;
+    const double floor = name->ends_with("force") ? force_floor(run, last_row, channel.name) : 0.0;
+    if (std::abs(last - target) <= own_tolerance(run) * scale + floor) continue;
     found.push_back({"program", fmt::format("{} ends {:.3g} off {:.9g}", *name, last - target, target)});
     return;
   }
