@@ -142,8 +142,7 @@ void check_forces(const Run& run, Violations& found) {
 void check_step_starts(const Run& run, Violations& found) {
   if (adheres(run.scenario) || run.integrator.used == integrators::k_forward_euler) return;
   const Table& table = run.record.history;
-  const double most =
-      std::max(own_tolerance(run), k_jump) * largest_of_kind(table, "overlap") + k_touch * run.scenario.radius;
+  const double most = std::max(own_tolerance(run), k_jump) * largest_of_kind(table, "overlap");
   const double least_force = k_little * largest_of_kind(table, "force");
   const auto step = *table.find("step");
   for (std::size_t c = 0; c < table.columns().size(); ++c) {
