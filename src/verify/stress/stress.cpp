@@ -15,6 +15,7 @@
 #include "history/staged_folder.hpp"
 #include "numerics/parallel.hpp"
 #include "scenario/text_file.hpp"
+#include "scenario/words.hpp"
 #include "verify/probe/profiled_system.hpp"
 #include "verify/stress/check/checks.hpp"
 #include "verify/stress/draw/generator.hpp"
@@ -81,10 +82,8 @@ std::string sequence_options(std::uint64_t seed, const DrawnModels& models) {
 }
 
 std::string file_text(const StressFailure& failure, const StressOptions& options, const std::string& text) {
-  std::string detail = failure.detail;
-  std::ranges::replace(detail, '\n', ' ');
   return fmt::format("# Scene {} of {}: {}: {}\n{}", failure.index, sequence_name(options.seed, options.models),
-                     failure.check, detail, text);
+                     failure.check, failure.detail, text);
 }
 
 class StressTest {
@@ -142,7 +141,7 @@ class StressTest {
                                   .model = model,
                                   .integrator = checked.scene.integrator,
                                   .check = violation.check,
-                                  .detail = violation.detail});
+                                  .detail = on_one_line(violation.detail)});
     }
     if (!options_.progress) return;
     const double share = std::min(1.0, seconds_since(start_) / options_.seconds);
@@ -206,10 +205,8 @@ std::string StressReport::text() const {
   for (const auto& [key, count] : kinds) text += fmt::format("{:>8}  {:<12} {}\n", count, key.first, key.second);
   text += '\n';
   for (const StressFailure& failure : failures) {
-    std::string detail = failure.detail;
-    std::ranges::replace(detail, '\n', ' ');
     text += fmt::format("{}: {}, {}: {}: {} -> {}\n", failure.index, failure.model, failure.integrator, failure.check,
-                        detail, failure.file);
+                        failure.detail, failure.file);
     text += fmt::format("    monograin stress {} --first {} --scenes 1\n", sequence_options(seed, drawn_from),
                         failure.index);
   }
