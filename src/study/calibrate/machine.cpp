@@ -13,8 +13,6 @@ namespace monograin {
 namespace {
 
 constexpr int k_most_runs = 80;
-// Least slope of a secant: shown displacement over that of the particle, 1 for a rigid machine.
-constexpr double k_least_slope = 0.1;
 // Least step of a secant, over the largest x: the slope then has three digits.
 constexpr double k_least_step = 1e3 * k_epsilon;
 // Least step of a secant, over the last moves of the turns before the point, which change the force as well.
@@ -96,7 +94,6 @@ class SeriesSearch {
     before_ = particle;
     for (std::size_t i = 0; i < x_.size(); ++i) {
       if (is_in_jump(i) || is_settled(i)) continue;
-      if (is_stuck(i)) slopes_[i] = 1.0;
       const double secant = particle[i] - errors_[i] / slopes_[i];
       const bool is_halved = is_off(i) && brackets_[i].is_valid() && (!is_shrinking(i) || !brackets_[i].holds(secant));
       particle[i] = is_halved ? brackets_[i].middle() : secant;
@@ -114,10 +111,6 @@ class SeriesSearch {
   [[nodiscard]] bool is_shrinking(std::size_t i) const {
     return !errors_before_.empty() && std::abs(errors_[i]) <= 0.5 * std::abs(errors_before_[i]);
   }
-  /// True if the slope is so much too large that steps neither lower the error nor are long enough to show the slope.
-  [[nodiscard]] bool is_stuck(std::size_t i) const {
-    return is_off(i) && !is_shrinking(i) && !is_long(errors_[i] / slopes_[i]);
-  }
   [[nodiscard]] bool is_off(std::size_t i) const { return std::abs(errors_[i]) > tolerance_; }
   [[nodiscard]] bool is_in_jump(std::size_t i) const {
     return is_off(i) && !is_shrinking(i) && brackets_[i].is_within(tolerance_);
@@ -127,7 +120,7 @@ class SeriesSearch {
     return i > 0 && i + 1 < x_.size() && (x_[i] - x_[i - 1]) * (x_[i + 1] - x_[i]) < 0.0;
   }
   void set_slope(std::size_t i, double slope) {
-    if (slope >= k_least_slope) slopes_[i] = slope;
+    if (slope > 0.0) slopes_[i] = slope;
   }
 
   /// Finds by how much the turns before each point have moved since the last trial.
