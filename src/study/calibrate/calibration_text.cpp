@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -203,15 +204,8 @@ void append_lines(std::vector<std::string>& lines, std::string_view text) {
 }  // namespace
 
 std::string_view word_of(Bound bound) {
-  switch (bound) {
-    case Bound::none:
-      return "";
-    case Bound::lower:
-      return "lower";
-    case Bound::upper:
-      return "upper";
-  }
-  return "";
+  constexpr std::array<std::string_view, 3> k_words{"", "lower", "upper"};
+  return k_words[static_cast<std::size_t>(bound)];
 }
 
 /// A number to six digits; a dash if it is undefined.

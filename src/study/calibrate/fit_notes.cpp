@@ -9,6 +9,7 @@
 
 #include "history/turns.hpp"
 #include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/calibration_text.hpp"
 #include "study/calibrate/response.hpp"
 
 namespace monograin {
@@ -224,8 +225,8 @@ void note_parameters(const Calibration& calibration, const CalibrationResult& re
                       "fit as well",
                       path));
     } else if (result.solution.bounds[k] != LeastSquaresSolution::Bound::none) {
-      notes.push_back(fmt::format("'{}' sits at its {} bound; its interval ends there", path,
-                                  result.solution.bounds[k] == LeastSquaresSolution::Bound::lower ? "lower" : "upper"));
+      notes.push_back(
+          fmt::format("'{}' sits at its {} bound; its interval ends there", path, word_of(result.solution.bounds[k])));
     } else if (result.uncertainty.half_width(k) > 0.5 * (parameter.upper - parameter.lower)) {
       notes.push_back(fmt::format("the data hardly determine '{}': its interval is wider than its bounds", path));
     }

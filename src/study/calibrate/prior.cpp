@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace monograin {
 
@@ -31,15 +33,8 @@ double Prior::slope(double value) const noexcept {
 }
 
 std::string_view word_of(Prior::Kind kind) noexcept {
-  switch (kind) {
-    case Prior::Kind::normal:
-      return "normal";
-    case Prior::Kind::lognormal:
-      return "lognormal";
-    case Prior::Kind::uniform:
-      return "uniform";
-  }
-  return "";
+  constexpr std::array<std::string_view, 3> k_words{"normal", "lognormal", "uniform"};
+  return k_words[static_cast<std::size_t>(kind)];
 }
 
 std::string describe(const Prior& prior, const std::string& unit, double unit_factor) {
