@@ -130,13 +130,16 @@ figure::Chart chart_of(std::span<const Calibration> calibrations, std::span<cons
   return {{std::move(curves), std::move(rest)}};
 }
 
+/// Draws a chart of a calibration. @return why there is no figure; empty: there is one
+std::string draw(figure::Chart chart, const Calibration& calibration, const fs::path& file) {
+  chart.references = reference_texts(*find_model(calibration.scenario.model));
+  return figure::try_to_draw(chart, fmt::format("{}: {}", calibration.name, data_names(calibration)), file);
+}
+
 }  // namespace
 
 std::string draw_calibration(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
-  figure::Chart chart = chart_of(calibration, result);
-  chart.references = reference_texts(*find_model(calibration.scenario.model));
-  return figure::try_to_draw(chart, fmt::format("{}: {}", calibration.name, data_names(calibration)),
-                             folder / "figure.svg");
+  return draw(chart_of(calibration, result), calibration, folder / "figure.svg");
 }
 
 std::string draw_report(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
@@ -144,9 +147,7 @@ std::string draw_report(const Calibration& calibration, const CalibrationResult&
   ReportLines lines = report_lines(calibration, result);
   chart.head = std::move(lines.head);
   chart.foot = std::move(lines.foot);
-  chart.references = reference_texts(*find_model(calibration.scenario.model));
-  return figure::try_to_draw(chart, fmt::format("{}: {}", calibration.name, data_names(calibration)),
-                             folder / "report.pdf");
+  return draw(std::move(chart), calibration, folder / "report.pdf");
 }
 
 std::string draw_comparison(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
