@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -20,8 +19,6 @@ namespace monograin {
 namespace {
 
 constexpr double k_same_force = 1e-6;  // deviation from a prescribed force that counts as none, over the largest
-
-constexpr std::size_t k_no_class = std::numeric_limits<std::size_t>::max();
 
 /// Index of the contact class to which a column belongs; the number of classes if there is none.
 std::size_t class_of(const Scene& scene, std::string_view column) {
@@ -272,7 +269,8 @@ bool Replay::set(std::string_view path, double value) {
 /// Makes the scene. A changed gap changes the displacement from which the program begins.
 Scene Replay::scene_from_start() {
   Scene scene = make_scene(scenario_);
-  const std::size_t c = columns_.control == Step::Kind::displacement ? class_of(scene, columns_.driven) : k_no_class;
+  if (columns_.control != Step::Kind::displacement) return scene;
+  const std::size_t c = class_of(scene, columns_.driven);
   if (c >= scene.classes.size() || scene.channels[c].at_rest.start == columns_.start) return scene;
   columns_.start = scene.channels[c].at_rest.start;
   follow(std::move(values_));

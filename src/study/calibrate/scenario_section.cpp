@@ -9,11 +9,8 @@
 #include "scenario/words.hpp"
 
 namespace monograin::calibration {
-namespace {
 
 namespace fs = std::filesystem;
-
-}  // namespace
 
 CheckedScenario NamedScenario::with(const std::vector<std::string>& overrides) const {
   return document.empty() ? read_scenario(file, overrides)
