@@ -27,8 +27,7 @@ namespace {
 constexpr std::size_t k_curve_points = 400;  // points of a fitted curve, about, if the data have fewer
 constexpr int k_most_rounds = 50;            // repetitions of fit and estimate of its noise
 
-constexpr std::size_t k_dense = 800;    // rows; a search with more of them first thins the data
-constexpr std::size_t k_thinned = 400;  // approximate number of rows that are left
+constexpr std::size_t k_thinned = 400;  // rows that are left, about, if a search with many first thins the data
 
 /// Number of parts into which the distance of two points is divided, so that a curve is smooth.
 std::size_t parts_between_points(std::span<const double> x) {
@@ -126,13 +125,13 @@ class Fit {
 
   /// One search with fixed weights. For many rows, the search begins with a fit to thinned data.
   [[nodiscard]] std::optional<LeastSquaresSolution> search_once() {
-    if (calibration_.x.values.size() <= k_dense) return minimise(problem_);
+    if (calibration_.x.values.size() <= 2 * k_thinned) return minimise(problem_);
     const Calibration thin = thinned(calibration_, k_thinned);
-    if (thin.counted() <= calibration_.free.size()) return minimise(problem_);
     const double share = static_cast<double>(thin.counted()) / static_cast<double>(rows_.size());
-    const auto near = Fit(thin, problem_.progress, prior_weight_ * std::sqrt(share)).search_once();
-    if (!near) return minimise(problem_);
-    auto solution = minimise_near(problem_, near->minima);
+    const auto near = thin.counted() > calibration_.free.size()
+                          ? Fit(thin, problem_.progress, prior_weight_ * std::sqrt(share)).search_once()
+                          : std::nullopt;
+    auto solution = near ? minimise_near(problem_, near->minima) : std::nullopt;
     if (!solution) return minimise(problem_);
     solution->evaluations += near->evaluations;
     solution->failures += near->failures;
@@ -331,11 +330,9 @@ class Fit {
       result.largest = std::abs(residual);
       result.largest_at = row;
     }
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      result.sum_of_squares += result.solution.residuals[i] * result.solution.residuals[i];
-    }
-    for (std::size_t i = rows_.size() + priors_.size(); i < result.solution.residuals.size(); ++i) {
-      result.sum_of_squares += std::pow(result.solution.residuals[i], 2);
+    for (std::size_t i = 0; i < result.solution.residuals.size(); ++i) {
+      const bool is_of_prior = i >= rows_.size() && i < rows_.size() + priors_.size();
+      if (!is_of_prior) result.sum_of_squares += std::pow(result.solution.residuals[i], 2);
     }
     result.noise_growth = noise_.shared_errors().log_determinant();
     for (const std::size_t row : rows_)
