@@ -21,18 +21,10 @@ constexpr double k_thousand = 1e3;
 constexpr double k_very_strong = 10.0;   // difference of the BIC (Kass and Raftery (1995))
 constexpr double k_clearly_less = 0.25;  // share of the cost that a cause leaves, if more than noise is left
 
-std::vector<std::size_t> rows_that_count(const Calibration& calibration) {
-  std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < calibration.weights.size(); ++row) {
-    if (calibration.weights[row] > 0.0) rows.push_back(row);
-  }
-  return rows;
-}
-
 /// Lowest and highest y of the rows that count.
 std::pair<double, double> range_of(const Calibration& calibration) {
   std::pair<double, double> range(k_infinity, -k_infinity);
-  for (const std::size_t row : rows_that_count(calibration)) {
+  for (const std::size_t row : calibration.counted_rows()) {
     range.first = std::min(range.first, calibration.y.values[row]);
     range.second = std::max(range.second, calibration.y.values[row]);
   }
@@ -141,10 +133,10 @@ void add_signs(const Calibration& calibration, std::vector<Suspicion>& suspicion
 /// Adds the suspicion that first touch lies elsewhere within the measured displacements, unless the offset is free.
 void add_offset(const Calibration& calibration, std::vector<Suspicion>& suspicions) {
   const MeasuredQuantity& moved = calibration.machine_moves_x() ? calibration.x : calibration.y;
-  const bool is_free = std::ranges::any_of(
-      calibration.free, [](const FreeParameter& parameter) { return parameter.key.path == calibration::k_offset; });
   const bool has_room = calibration.free.size() < std::min(k_most_parameters, calibration.counted());
-  if (!moved.observable.ends_with(".displacement") || is_free || !has_room) return;
+  if (!moved.observable.ends_with(".displacement") || calibration.find_free(calibration::k_offset) != nullptr ||
+      !has_room)
+    return;
   const auto [lowest, highest] = std::ranges::minmax(moved.values);
   FreeParameter offset;
   offset.lower = lowest;
@@ -172,7 +164,7 @@ bool is_constant(const Calibration& calibration) {
 
 double explained_share(const Calibration& calibration, std::span<const double> weights, double cost) {
   if (is_constant(calibration)) return k_nan;
-  const std::vector<std::size_t> rows = rows_that_count(calibration);
+  const std::vector<std::size_t> rows = calibration.counted_rows();
   const auto cost_of = [&](double constant) {
     double sum = 0.0;
     for (const std::size_t row : rows) {
@@ -240,7 +232,7 @@ std::vector<std::string> warnings_of(const Calibration& calibration, const Calib
   if (is_constant(calibration)) {
     return {"y is the same in every row: the data say nothing of the parameters; expected the column that changes"};
   }
-  const auto rows = rows_that_count(calibration);
+  const auto rows = calibration.counted_rows();
   const bool never_touches = std::ranges::all_of(rows, [&result](std::size_t row) { return result.fit.y[row] == 0.0; });
   std::string warning = never_touches ? "no datum touches the particle: the fit is zero in every row"
                                       : fmt::format("the fit is {}: {} = {:.4g}",

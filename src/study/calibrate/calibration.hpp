@@ -110,8 +110,12 @@ struct Calibration {
   [[nodiscard]] bool has_machine() const noexcept;
   /// True if the machine adds to x rather than to y: the quantity that is a displacement.
   [[nodiscard]] bool machine_moves_x() const noexcept { return x.observable.ends_with(".displacement"); }
-  /// Number of rows that count in the fit.
-  [[nodiscard]] std::size_t counted() const noexcept;
+  /// Indices of the rows that count in the fit: those with a weight.
+  [[nodiscard]] std::vector<std::size_t> counted_rows() const;
+  /// Their number.
+  [[nodiscard]] std::size_t counted() const { return counted_rows().size(); }
+  /// The free parameter with a path, or nullptr.
+  [[nodiscard]] const FreeParameter* find_free(std::string_view path) const noexcept;
   /// The curve to which a row belongs.
   [[nodiscard]] const MeasuredCurve& curve_of(std::size_t row) const noexcept;
 };

@@ -12,8 +12,18 @@
 
 namespace monograin {
 
-std::size_t Calibration::counted() const noexcept {
-  return static_cast<std::size_t>(std::ranges::count_if(weights, [](double weight) { return weight > 0.0; }));
+std::vector<std::size_t> Calibration::counted_rows() const {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < weights.size(); ++row) {
+    if (weights[row] > 0.0) rows.push_back(row);
+  }
+  return rows;
+}
+
+const FreeParameter* Calibration::find_free(std::string_view path) const noexcept {
+  const auto found =
+      std::ranges::find_if(free, [path](const FreeParameter& parameter) { return parameter.key.path == path; });
+  return found == free.end() ? nullptr : &*found;
 }
 
 bool Calibration::knows_noise() const noexcept {

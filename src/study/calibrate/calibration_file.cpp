@@ -536,7 +536,7 @@ class CalibrationReader {
     for (const MeasuredCurve& curve : made_.curves) {
       for (const std::string& text : curve.overrides) {
         const std::string_view path = trimmed(std::string_view(text).substr(0, text.find('=')));
-        if (std::ranges::none_of(made_.free, [&path](const FreeParameter& p) { return p.key.path == path; })) continue;
+        if (made_.find_free(path) == nullptr) continue;
         made_.notes.push_back(fmt::format("set = '{}' has no effect: [free] has '{}'", shown(text), path));
       }
     }

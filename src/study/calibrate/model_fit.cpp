@@ -11,15 +11,6 @@
 namespace monograin {
 namespace {
 
-const FreeParameter* free_parameter(const Calibration& calibration, std::string_view path) {
-  const auto found = std::ranges::find(calibration.free, path, [](const auto& free) { return free.key.path; });
-  return found == calibration.free.end() ? nullptr : &*found;
-}
-
-bool is_free(const Calibration& calibration, std::string_view path) {
-  return free_parameter(calibration, path) != nullptr;
-}
-
 std::string_view class_of(const MeasuredQuantity& quantity) {
   return std::string_view(quantity.observable).substr(0, quantity.observable.rfind('.'));
 }
@@ -32,9 +23,10 @@ const CurveProcedure* procedure_of(const Calibration& calibration) {
 bool is_force_curve(const Calibration& calibration) {
   return calibration.curves.size() == 1 && calibration.curves.front().control == Step::Kind::displacement &&
          calibration.y.observable.ends_with(".force") && class_of(calibration.x) == class_of(calibration.y) &&
-         !is_free(calibration, k_radius_key) && std::ranges::none_of(calibration.free, &FreeParameter::is_of_machine) &&
+         calibration.find_free(k_radius_key) == nullptr &&
+         std::ranges::none_of(calibration.free, &FreeParameter::is_of_machine) &&
          std::ranges::none_of(procedure_of(calibration)->fixed_keys,
-                              [&](std::string_view key) { return is_free(calibration, key); });
+                              [&](std::string_view key) { return calibration.find_free(key) != nullptr; });
 }
 
 /// The rows that count, as displacements over R0 and forces over the procedure's unit.
@@ -64,7 +56,8 @@ ModelFits model_fits(const Calibration& calibration) {
     const XyCurve& first = ways_back.front();
     fits.starts = procedure->unloading_starts(model_input(calibration.scenario), {first.x, first.y});
   }
-  if (!std::ranges::all_of(procedure->keys, [&](std::string_view key) { return is_free(calibration, key); })) {
+  if (!std::ranges::all_of(procedure->keys,
+                           [&](std::string_view key) { return calibration.find_free(key) != nullptr; })) {
     return fits;
   }
   const XyCurve loading = first_loading(curve);
@@ -79,7 +72,7 @@ ProcedureFit measured_fit(const Calibration& calibration, const ModelFits& fits,
                           const std::vector<double>& parameters) {
   std::vector<double> values;
   for (const std::string& key : fits.keys) {
-    values.push_back(parameters[static_cast<std::size_t>(free_parameter(calibration, key) - calibration.free.data())]);
+    values.push_back(parameters[static_cast<std::size_t>(calibration.find_free(key) - calibration.free.data())]);
   }
   const XyCurve loading = first_loading(normalised(calibration));
   return procedure_of(calibration)->measure({loading.x, loading.y}, values);

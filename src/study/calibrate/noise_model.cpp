@@ -14,14 +14,12 @@ constexpr double k_same_weight = 1e-6;  // relative change of weights that count
 
 NoiseModel::NoiseModel(const Calibration& calibration, std::span<const Response> responses)
     : calibration_(calibration),
+      rows_(calibration.counted_rows()),
       noise_of_y_(calibration.weights.size()),
       curvature_biases_(calibration.weights.size()),
       weights_(calibration.weights),
       trial_weights_(calibration.weights) {
   std::ranges::transform(weights_, noise_of_y_.begin(), [](double weight) { return 1.0 / weight; });
-  for (std::size_t row = 0; row < weights_.size(); ++row) {
-    if (weights_[row] > 0.0) rows_.push_back(row);
-  }
   for (std::size_t c = 0; c < calibration.curves.size(); ++c) {
     const MeasuredCurve& curve = calibration.curves[c];
     if (curve.noise.x > 0.0) errors_in_x_.push_back({c, ErrorsInX(calibration, curve, responses[c].replay().path())});
