@@ -37,8 +37,8 @@ std::size_t parts_between_points(std::span<const double> x) {
 [[nodiscard]] std::vector<Response> responses_of(const Calibration& calibration) {
   std::vector<Response> responses;
   for (const MeasuredCurve& curve : calibration.curves) {
-    DataPath path = path_through(x_of(calibration, curve));
-    std::vector<double> y = path.at_points(y_of(calibration, curve));
+    DataPath path = path_through(curve.rows_of(calibration.x.values));
+    std::vector<double> y = path.at_points(curve.rows_of(calibration.y.values));
     responses.emplace_back(calibration, curve, std::move(path), std::move(y));
   }
   return responses;
@@ -197,7 +197,7 @@ class Fit {
 
   /// Computes the response of one curve. @return false if its scenario cannot follow the data
   bool run_curve(std::size_t curve, std::span<const double> parameters) {
-    return responses_[curve](parameters, rows_of(response_, calibration_.curves[curve]));
+    return responses_[curve](parameters, calibration_.curves[curve].rows_of(response_));
   }
 
   /// Computes response_, curve by curve. @return false if a curve cannot be followed; later ones are not computed
@@ -292,19 +292,19 @@ class Fit {
 
   /// The fit to one curve, with points between those of the data.
   [[nodiscard]] FittedCurve curve_through(const MeasuredCurve& measured, const CalibrationResult& result) {
-    const std::vector<double> data_x = x_of(calibration_, measured);
+    const std::span<const double> data_x = measured.rows_of(calibration_.x.values);
     const std::size_t parts = parts_between_points(data_x);
     if (parts == 1) {
       const auto rows = [&measured](const std::vector<double>& values) {
-        return std::vector(values.begin() + static_cast<std::ptrdiff_t>(measured.begin),
-                           values.begin() + static_cast<std::ptrdiff_t>(measured.end));
+        const std::span<const double> own = measured.rows_of(values);
+        return std::vector(own.begin(), own.end());
       };
-      return {data_x, rows(result.fit.y), rows(result.fit.band)};
+      return {rows(calibration_.x.values), rows(result.fit.y), rows(result.fit.band)};
     }
     const DataPath path = path_through(data_x);
     const std::vector<double> x = refined(path.x, parts);
     Response response_through(calibration_, measured, refined(path, parts),
-                              refined(path.at_points(y_of(calibration_, measured)), parts));
+                              refined(path.at_points(measured.rows_of(calibration_.y.values)), parts));
     LeastSquaresProblem problem = problem_;
     problem.residual_count = x.size();
     problem.residuals = [&response_through](std::span<const double> parameters, std::span<double> response) {

@@ -77,6 +77,16 @@ struct MeasuredCurve {
   std::string driven;                      ///< observable that x holds
   Step::Kind control = Step::Kind::displacement;
   double start = 0.0;  ///< of x, before the first step [SI]
+
+  /// Its values, out of values that are stored row by row.
+  template <class T>
+  [[nodiscard]] std::span<T> rows_of(std::vector<T>& values) const {
+    return std::span(values).subspan(begin, end - begin);
+  }
+  template <class T>
+  [[nodiscard]] std::span<const T> rows_of(const std::vector<T>& values) const {
+    return std::span(values).subspan(begin, end - begin);
+  }
 };
 
 /// Method by which intervals are found.

@@ -438,12 +438,11 @@ class CalibrationReader {
   }
 
   /// Reports a frame that would yield by far more than what was measured together with the particle.
-  void check_deflections(const SourceLocation& where, std::span<const double> displacements,
-                         std::span<const double> forces) {
+  void check_deflections(const SourceLocation& where, const std::vector<double>& displacements,
+                         const std::vector<double>& forces) {
     for (const MeasuredCurve& curve : made_.curves) {
-      const std::size_t count = curve.end - curve.begin;
-      const auto [least, most] = std::ranges::minmax(forces.subspan(curve.begin, count));
-      const auto [first, last] = std::ranges::minmax(displacements.subspan(curve.begin, count));
+      const auto [least, most] = std::ranges::minmax(curve.rows_of(forces));
+      const auto [first, last] = std::ranges::minmax(curve.rows_of(displacements));
       const double deflection = std::abs(curve.machine.addition(most) - curve.machine.addition(least));
       if (first == last || deflection <= k_largest_deflection * (last - first)) continue;
       faults_.add(

@@ -18,7 +18,7 @@ ErrorsInX::ErrorsInX(const Calibration& calibration, const MeasuredCurve& curve,
       moved_(path.point_of.size()),
       slopes_(path.point_of.size()),
       curvature_biases_(path.point_of.size()) {
-  const std::vector<double> x = x_of(calibration, curve);
+  const std::span<const double> x = curve.rows_of(calibration.x.values);
   if (x.size() < 2) {
     of_turns_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(x.size()), 0);
     return;
@@ -73,7 +73,7 @@ void ErrorsInX::follow(const Response& response) {
 
 void ErrorsInX::set_effects_of_turns(std::span<const double> parameters, const Response& response) {
   const std::span<const double> y = response.at_points();
-  const std::vector<double> measured = path_.at_points(y_of(calibration_, curve_));
+  const std::vector<double> measured = path_.at_points(curve_.rows_of(calibration_.y.values));
   for (std::size_t turn = 0; turn < turns_.size(); ++turn) {
     const auto [end, error] = turns_[turn];
     auto column = of_turns_.col(static_cast<Eigen::Index>(turn));

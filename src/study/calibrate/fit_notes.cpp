@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "history/turns.hpp"
 #include "study/calibrate/calibration_language.hpp"
 #include "study/calibrate/calibration_text.hpp"
-#include "study/calibrate/response.hpp"
 
 namespace monograin {
 namespace {
@@ -98,10 +98,10 @@ void note_residual_tests(const Calibration& calibration, const CalibrationResult
   notes.push_back(std::move(note));
 }
 
-void note_table_ends(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x,
+void note_table_ends(const Calibration& calibration, const MeasuredCurve& curve, std::span<const double> x,
                      Notes& notes) {
   if (curve.machine.forces.empty()) return;
-  const std::vector<double> forces = calibration.machine_moves_x() ? y_of(calibration, curve) : x;
+  const std::span<const double> forces = calibration.machine_moves_x() ? curve.rows_of(calibration.y.values) : x;
   const double largest = *std::ranges::max_element(forces);
   if (largest <= curve.machine.forces.back()) return;
   notes.push_back(fmt::format(
@@ -122,9 +122,9 @@ void note_holds(const Calibration& calibration, const MeasuredCurve& curve, cons
 }
 
 /// Notes noise of x, and data that begin with unloading.
-void note_path(const Calibration& calibration, const MeasuredCurve& curve, const std::vector<double>& x,
+void note_path(const Calibration& calibration, const MeasuredCurve& curve, std::span<const double> x,
                const std::vector<Turn>& turns, Notes& notes) {
-  const auto changed = std::ranges::find_if(x, [&x](double value) { return value != x.front(); });
+  const auto changed = std::ranges::find_if(x, [x](double value) { return value != x.front(); });
   if (const double noise = noise_in(x); noise > 0.0) {
     constexpr double k_apart = 3.0;  // ratio of noises from which on one of them is wrong
     std::string of_intervals =
@@ -147,7 +147,7 @@ void note_path(const Calibration& calibration, const MeasuredCurve& curve, const
 
 /// Notes the turn that the rows have missed by most, or may have, if that changes y by more than its residuals.
 void note_missed_turns(const Calibration& calibration, const CalibrationResult& result, const MeasuredCurve& curve,
-                       const std::vector<double>& x, const std::vector<Turn>& turns, Notes& notes) {
+                       std::span<const double> x, const std::vector<Turn>& turns, Notes& notes) {
   if (result.uncertainty.degrees_of_freedom == 0) return;
   const double deviation =
       std::sqrt(result.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom));
@@ -261,7 +261,7 @@ std::vector<std::string> notes_of(const Calibration& calibration, const Calibrat
                      solution.failures, solution.evaluations));
   }
   for (const MeasuredCurve& curve : calibration.curves) {
-    const std::vector<double> x = x_of(calibration, curve);
+    const std::span<const double> x = curve.rows_of(calibration.x.values);
     note_table_ends(calibration, curve, x, notes);
     const std::vector<Turn> turns = turns_of(x, turning_points(x));
     note_path(calibration, curve, x, turns, notes);

@@ -38,7 +38,7 @@ Parts parts_of(const Calibration& calibration) {
   std::vector<Part> cycles;
   std::vector<Part> stretches;
   for (const MeasuredCurve& curve : calibration.curves) {
-    const auto x = std::span(calibration.x.values).subspan(curve.begin, curve.end - curve.begin);
+    const std::span<const double> x = curve.rows_of(calibration.x.values);
     std::vector<std::size_t> turns;
     for (const Turn& turn : turns_of(x, turning_points(x))) turns.push_back(turn.last_row);
     for (std::size_t k = 0; k + 1 < turns.size(); ++k) {

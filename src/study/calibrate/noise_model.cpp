@@ -37,7 +37,7 @@ void NoiseModel::follow_slopes(std::span<const Response> responses) {
   for (auto& [c, errors] : errors_in_x_) {
     const MeasuredCurve& curve = calibration_.curves[c];
     errors.follow(responses[c]);
-    std::ranges::copy(errors.curvature_biases(), rows_of(curvature_biases_, curve).begin());
+    std::ranges::copy(errors.curvature_biases(), curve.rows_of(curvature_biases_).begin());
     for (std::size_t row = curve.begin; row < curve.end; ++row) {
       trial_weights_[row] = 1.0 / std::hypot(noise_of_y_[row], curve.noise.x * errors.slopes()[row - curve.begin]);
     }

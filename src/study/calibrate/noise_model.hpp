@@ -13,12 +13,6 @@
 
 namespace monograin {
 
-/// Values of one curve, out of values that are stored row by row.
-template <class T>
-[[nodiscard]] std::span<T> rows_of(std::vector<T>& values, const MeasuredCurve& curve) {
-  return std::span(values).subspan(curve.begin, curve.end - curve.begin);
-}
-
 /// Noise of the data, and the weights of their residuals: one over the standard deviation if the noise is known. Noise
 /// of x and noise in proportion to y depend on the fit. Noise of x then adds three things to the residuals of a row: a
 /// larger standard deviation, a bias of y by the curvature, and errors of the turns, which all rows after a turn share.
@@ -31,7 +25,7 @@ class NoiseModel {
   /// @param responses    one for each curve
   NoiseModel(const Calibration& calibration, std::span<const Response> responses);
 
-  /// Indices of the rows that count: those with a weight.
+  /// Indices of the rows that count.
   [[nodiscard]] const std::vector<std::size_t>& rows() const noexcept { return rows_; }
   [[nodiscard]] bool depends_on_fit() const;
 

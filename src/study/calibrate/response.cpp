@@ -29,16 +29,6 @@ double noise_of(const Calibration& calibration) {
   return calibration.has_machine() ? std::max(noise, k_series_noise) : noise;
 }
 
-std::vector<double> x_of(const Calibration& calibration, const MeasuredCurve& curve) {
-  const auto begin = calibration.x.values.begin();
-  return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
-}
-
-std::vector<double> y_of(const Calibration& calibration, const MeasuredCurve& curve) {
-  const auto begin = calibration.y.values.begin();
-  return {begin + static_cast<std::ptrdiff_t>(curve.begin), begin + static_cast<std::ptrdiff_t>(curve.end)};
-}
-
 Response::Response(const Calibration& calibration, const MeasuredCurve& curve, DataPath path, std::vector<double> y)
     : calibration_(calibration),
       curve_(curve),

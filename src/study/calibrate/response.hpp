@@ -17,10 +17,6 @@ inline constexpr double k_direct_noise = 1e-13;
 /// Relative error of the responses.
 [[nodiscard]] double noise_of(const Calibration& calibration);
 
-/// Measured x of one curve; y_of() gives its y.
-[[nodiscard]] std::vector<double> x_of(const Calibration& calibration, const MeasuredCurve& curve);
-[[nodiscard]] std::vector<double> y_of(const Calibration& calibration, const MeasuredCurve& curve);
-
 /// Response of one curve's scenario to the parameters of a fit, for the residuals of a least-squares problem.
 class Response {
  public:

@@ -35,9 +35,8 @@ Calibration thinned(const Calibration& calibration, std::size_t rows) {
   thin.lines.clear();
   const std::size_t stride = (calibration.x.values.size() + rows - 1) / rows;
   for (MeasuredCurve& curve : thin.curves) {
-    const auto x = std::span(calibration.x.values).subspan(curve.begin, curve.end - curve.begin);
     const std::size_t begin = thin.lines.size();
-    for (const std::size_t row : rows_to_keep(x, stride)) {
+    for (const std::size_t row : rows_to_keep(curve.rows_of(calibration.x.values), stride)) {
       const std::size_t from = curve.begin + row;
       thin.x.values.push_back(calibration.x.values[from]);
       thin.y.values.push_back(calibration.y.values[from]);

@@ -304,8 +304,8 @@ void collect_recorded_rows(const Table& history, const ExperimentPlan& plan, con
                            ProgramInformation& information) {
   const Calibration fit = recorded(history, plan, program);
   const MeasuredCurve& curve = fit.curves.front();
-  const DataPath path = path_through(x_of(fit, curve));
-  Response response(fit, curve, path, path.at_points(y_of(fit, curve)));
+  const DataPath path = path_through(fit.x.values);
+  Response response(fit, curve, path, path.at_points(fit.y.values));
   LeastSquaresProblem problem;
   problem.parameters.assign(fit.free.begin(), fit.free.end());
   problem.residual_count = fit.weights.size();
