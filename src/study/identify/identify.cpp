@@ -413,13 +413,12 @@ ExpectedErrors expected_errors(const std::vector<FreeParameter>& free, std::span
   solution.bounds.assign(free.size(), LeastSquaresSolution::Bound::none);
   const Eigen::MatrixXd jacobian = stacked(free, values, programs);
   solution.residuals.assign(static_cast<std::size_t>(jacobian.rows()), 0.0);
-  // Rows are scaled to y of order one, so that the error of derivatives can be compared with them.
-  double scale = 0.0;
+  // Rows are scaled to y of order one at most, so that the error of derivatives can be compared with them.
+  double scale = 1.0;
   for (const ProgramInformation* program : programs) {
     scale = std::max(scale, program->largest);
     problem.noise = std::max(problem.noise, program->noise);
   }
-  if (scale == 0.0) scale = 1.0;
   ExpectedErrors expected;
   expected.uncertainty =
       uncertainty_of(problem, solution, jacobian / scale, solution.residuals.size(), k_level, 1.0 / scale);

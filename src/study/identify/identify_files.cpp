@@ -16,6 +16,7 @@
 #include "scenario/text_file.hpp"
 #include "scenario/units.hpp"
 #include "study/calibrate/calibration_language.hpp"
+#include "study/calibrate/calibration_text.hpp"
 #include "study/calibrate/text_table.hpp"
 #include "system/resolution.hpp"
 
@@ -26,11 +27,6 @@ constexpr const char* k_figure = "figure.svg";
 // Okabe and Ito (2008), for readers who do not see all colours.
 constexpr std::array<unsigned, 7> k_colours{0x999999, 0x0072B2, 0xE69F00, 0x009E73, 0xCC79A7, 0x56B4E9, 0xD55E00};
 constexpr double k_half_bar = 0.3;
-
-std::string six_digits(double value, const std::string& unit = {}) {
-  if (!std::isfinite(value)) return "-";
-  return fmt::format("{:.6g}{}{}", value, unit.empty() ? "" : " ", unit);
-}
 
 /// Standard error over the value; nan if the value is zero, as an offset may be.
 double relative_error(const ExperimentPlan& plan, const ExpectedErrors& errors, std::size_t k) {
@@ -78,7 +74,7 @@ std::string planned_text(const ExperimentPlan& plan, const ExpectedErrors& error
   std::vector<TextRow> rows{{"parameter", "value", "std. error", "relative"}};
   for (std::size_t k = 0; k < plan.free.size(); ++k) {
     const FreeParameter& parameter = plan.free[k];
-    const auto own = [&](double si) { return six_digits(si / parameter.unit_factor, parameter.unit); };
+    const auto own = [&](double si) { return with_unit(si / parameter.unit_factor, parameter.unit); };
     rows.push_back({parameter.key.path, own(plan.values[k]), own(errors.uncertainty.standard_error(k)),
                     plan.values[k] == 0.0 && errors.uncertainty.is_determined[k] ? "-" : shown_error(plan, errors, k)});
   }
