@@ -57,19 +57,19 @@ struct Outcome {
   return text;
 }
 
-/// Extreme value of a column, without undefined values. @param extreme  std::fmax or std::fmin
-[[nodiscard]] double extreme_of(const Table& history, std::size_t column, double (*extreme)(double, double)) {
-  double result = k_nan;
-  for (std::size_t row = 0; row < history.row_count(); ++row) result = extreme(result, history.at(row, column));
-  return result;
-}
+/// The larger or the smaller of two numbers, std::fmax or std::fmin, which pass over undefined ones.
+using Extreme = double (*)(double, double);
 
-/// Which values of a history become cells of the results, and their headings: final values, then extreme ones.
+/// A value of a history that becomes a cell of the results.
+struct Result {
+  std::size_t column = 0;
+  Extreme extreme = nullptr;  ///< of all values of the column; null: its final value
+};
+
+/// The values of a history that become cells, and their headings: final values, then extreme ones.
 struct Layout {
-  std::vector<Column> columns;          ///< of the history
-  std::vector<std::size_t> finals{};    ///< columns whose final value is a cell
-  std::vector<std::size_t> largest{};   ///< columns whose largest value is one
-  std::vector<std::size_t> smallest{};  ///< columns whose smallest value is one
+  std::vector<Column> columns;  ///< of the history
+  std::vector<Result> results{};
   std::string headings{};
 };
 
@@ -77,18 +77,19 @@ struct Layout {
 [[nodiscard]] Layout layout_of(const std::vector<Column>& columns, const std::vector<std::string>& wanted) {
   Layout layout{.columns = columns};
   std::vector<std::string> headings;
-  const auto add = [&](std::string_view prefix, std::vector<std::size_t>& places, bool takes_words) {
+  const auto add = [&](std::string_view prefix, Extreme extreme) {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const std::string name = fmt::format("{}.{}", prefix, columns[k].name);
       const bool is_wanted = wanted.empty() || std::ranges::find(wanted, name) != wanted.end();
-      if (is_counter(columns[k]) || (columns[k].holds_words() && !takes_words) || !is_wanted) continue;
-      places.push_back(k);
+      const bool is_possible = extreme == nullptr || !columns[k].holds_words();
+      if (is_counter(columns[k]) || !is_possible || !is_wanted) continue;
+      layout.results.push_back({k, extreme});
       headings.push_back(fmt::format("{}.{}", prefix, columns[k].heading()));
     }
   };
-  add("end", layout.finals, true);
-  add("max", layout.largest, false);
-  if (!wanted.empty()) add("min", layout.smallest, false);
+  add("end", nullptr);
+  add("max", std::fmax);
+  if (!wanted.empty()) add("min", std::fmin);
   layout.headings = fmt::format("{}", fmt::join(headings, ","));
   return layout;
 }
@@ -102,25 +103,16 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
   outcome.columns = layout.headings;
   const std::size_t last = history.row_count() - 1;
   std::string& cells = outcome.row.cells;
-  const auto begin_cell = [&] {
+  for (const auto& [column, extreme] : layout.results) {
     if (!cells.empty()) cells += ',';
-  };
-  for (const std::size_t k : layout.finals) {
-    begin_cell();
-    if (layout.columns[k].holds_words()) {
-      cells += history.word(last, k);
-    } else {
-      append_csv_number(cells, history.at(last, k));
+    if (layout.columns[column].holds_words()) {
+      cells += history.word(last, column);
+      continue;
     }
+    double value = history.at(last, column);
+    for (std::size_t row = 0; extreme != nullptr && row < last; ++row) value = extreme(value, history.at(row, column));
+    append_csv_number(cells, value);
   }
-  const auto add_extremes = [&](const std::vector<std::size_t>& places, double (*extreme)(double, double)) {
-    for (const std::size_t k : places) {
-      begin_cell();
-      append_csv_number(cells, extreme_of(history, k, extreme));
-    }
-  };
-  add_extremes(layout.largest, std::fmax);
-  add_extremes(layout.smallest, std::fmin);
 }
 
 /// Parts of a history that the wanted results do not depend on.
