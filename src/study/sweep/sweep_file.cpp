@@ -356,9 +356,9 @@ class SweepReader {
     if (faults_.size() > 0) return;
     double count = 1.0;
     for (Factor& factor : factors_) {
-      if (factor.range) {
-        for (int i = 0; i < factor.range->points; ++i) {
-          factor.values.push_back(factor.range->at(static_cast<double>(i) / (factor.range->points - 1)));
+      if (const std::optional<FactorRange> range = std::exchange(factor.range, std::nullopt)) {
+        for (int i = 0; i < range->points; ++i) {
+          factor.values.push_back(range->at(static_cast<double>(i) / (range->points - 1)));
         }
       }
       count *= static_cast<double>(factor.values.size());
@@ -368,20 +368,18 @@ class SweepReader {
                   fmt::format("the grid has {:g} points; expected at most {:g}", count, sweep::k_most_runs));
       return;
     }
-    std::vector<FactorValue> values(factors_.size());
-    for (std::size_t point = 0; point < static_cast<std::size_t>(count); ++point) {
-      std::size_t rest = point;  // the last key changes fastest
-      for (std::size_t f = factors_.size(); f-- > 0; rest /= factors_[f].values.size()) {
-        values[f] = factors_[f].values[rest % factors_[f].values.size()];
-      }
-      std::vector<SweepValue> run = resolved(values);
-      if (broken_constraint(run) == nullptr) {
-        runs_.add(run);
-      } else {
-        ++left_out_;
-      }
-    }
+    for (std::size_t point = 0; point < static_cast<std::size_t>(count); ++point) add_if_allowed(values_at({}, point));
     if (runs_.size() == 0) faults_.add(constraints_.front().where, "no point of the grid meets the constraints");
+  }
+
+  /// Adds a run, or leaves its point out if it breaks a constraint.
+  void add_if_allowed(const std::vector<FactorValue>& values) {
+    const std::vector<SweepValue> run = resolved(values);
+    if (broken_constraint(run) == nullptr) {
+      runs_.add(run);
+    } else {
+      ++left_out_;
+    }
   }
 
   void make_maxpro(const Section& root) {
@@ -459,18 +457,13 @@ class SweepReader {
       std::vector<double> shares(point.begin(), point.end());
       if (joint_) joint_->correlate(std::span(shares).subspan(first_calibrated_));
       for (std::size_t f = 0; f < factors_.size(); ++f) values[f] = factors_[f].at(shares[f]);
-      const std::vector<SweepValue> run = resolved(values);
-      if (broken_constraint(run) == nullptr) {
-        runs_.add(run);
-      } else {
-        ++left_out_;
-      }
+      add_if_allowed(values);
     }
     if (runs_.size() == 0) faults_.add(constraints_.front().where, "no point of the design meets the constraints");
     if (left_out_ > 0) points_ = {};  // the remaining points fill another space
   }
 
-  /// Values at a point of the cube, and at a level of the product of all lists.
+  /// Values at a point of the cube, and at a level of the product of all lists, whose last one changes fastest.
   [[nodiscard]] std::vector<FactorValue> values_at(std::span<const double> point, std::size_t level) const {
     std::vector<FactorValue> values(factors_.size());
     std::size_t axis = point.size();
