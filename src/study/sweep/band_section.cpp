@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <optional>
 
+#include "scenario/cells.hpp"
 #include "scenario/words.hpp"
 #include "study/sweep/sweep_language.hpp"
 
@@ -15,18 +16,16 @@ std::vector<double> percentiles_in(Reading& reading, const Section& section) {
   std::vector<double> percentiles;
   const std::vector<std::string> texts = section.texts("percentiles");
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    double value = 0.0;
-    const char* const end = texts[i].data() + texts[i].size();
-    const auto [rest, error] = std::from_chars(texts[i].data(), end, value);
-    const bool is_percentage = error == std::errc{} && rest == end && value >= 0.0 && value <= 100.0;
-    if (!is_percentage || (i > 0 && value <= percentiles.back())) {
+    const std::optional<double> value = number_in(texts[i]);
+    const bool is_percentage = value && *value >= 0.0 && *value <= 100.0;
+    if (!is_percentage || (i > 0 && *value <= percentiles.back())) {
       reading.faults.add(section.value_place("percentiles", i),
                          fmt::format("percentiles: '{}': expected ascending numbers between 0 and 100, for example "
                                      "[5, 50, 95]",
                                      shown(texts[i])));
       break;
     }
-    percentiles.push_back(value);
+    percentiles.push_back(*value);
   }
   return percentiles;
 }

@@ -41,7 +41,6 @@ struct DesignSpace {
 /// Fast flexible filling: the function clusters uniform candidates, gives every level one point in each primary
 /// cluster, and chooses for each point the candidate of its own sub-cluster that makes the criterion smallest.
 /// A design depends on the arguments alone. Time grows as the square of the number of runs: a tenth of a second for 60,
-/// half a minute for 10,000; memory grows in proportion to it.
 /// half a minute for 10,000; memory grows as the number itself.
 /// @param runs  number of points, a positive multiple of the number of levels
 /// @throws std::invalid_argument  for another number of runs

@@ -259,7 +259,6 @@ class LevelReader {
 }  // namespace
 
 FactorValue FactorRange::at(double share) const {
-  if (share == 0.0) return from;
   if (share == 1.0) return to;
   FactorValue value = from;
   value.number = is_logarithmic ? from.number * std::pow(to.number / from.number, share)

@@ -13,12 +13,6 @@
 #include "scenario/words.hpp"
 
 namespace monograin {
-namespace {
-
-// Smallest pivot of a correlation; below it the numbers are functions of each other.
-constexpr double k_least_pivot = 1e-6;
-
-}  // namespace
 
 void JointNormal::correlate(std::span<double> shares) const {
   const boost::math::normal normal;
@@ -73,7 +67,7 @@ JointNormal read_joint_normal(std::string_view text) {
     }
     const Eigen::LLT<Eigen::MatrixXd> decomposition(correlation);
     joint.factor = decomposition.matrixL();
-    if (decomposition.info() != Eigen::Success || !(joint.factor.diagonal().array() > k_least_pivot).all()) {
+    if (decomposition.info() != Eigen::Success) {
       throw std::runtime_error("its numbers depend on each other; expected a calibration with fewer free numbers");
     }
   } catch (const nlohmann::json::exception&) {
