@@ -451,7 +451,7 @@ class SceneCheck {
   struct Kinship {
     Magnification larger = {};  ///< factors by which the second is larger than the first
     bool is_same_form = false;  ///< the second must give up where the first does
-    /// Makes runs whose distance from each other is allowed.
+    /// Makes runs the distance of whose ends from each other is allowed.
     std::function<std::vector<Run>()> copies = [] { return std::vector<Run>(); };
   };
 
@@ -471,10 +471,8 @@ class SceneCheck {
     if (has_same_end && ends <= tolerance_ && events == expected_events && apart.value <= tolerance_) return;
 
     // A spread of nan allows any distance: a column is empty, or the data cannot be changed.
-    const std::vector<Run> copies = kinship.copies();
     const auto curves_apart = [this](const Run& a, const Run& b) { return between(a, b).value; };
-    double widest = spread(*reference_, neighbours(), curves_apart);
-    if (!copies.empty()) widest = worse(widest, spread(copies.front(), copies, curves_apart));
+    const double widest = spread(*reference_, neighbours(), curves_apart);
     // The state is not determined from where a run with changed data has met a limit.
     const Distance known = distance_of(expected, actual, kinship.larger, first_end(neighbours()));
     const auto is_beyond = [&](double spread) { return !(known.value <= tolerance_ + k_sample_multiple * spread); };
@@ -494,9 +492,9 @@ class SceneCheck {
       return;
     }
     if (ends > tolerance_ && all_share(stated_end)) {
+      const std::vector<Run> copies = kinship.copies();
       double of_ends = spread(*reference_, neighbours(), ends_apart);
       if (!copies.empty()) of_ends = worse(of_ends, spread(copies.front(), copies, ends_apart));
-      of_ends = std::max(of_ends, spread_of_states(ends_apart));
       if (ends > tolerance_ + k_sample_multiple * of_ends) {
         report(check, fmt::format("ends {:.3g} of a step apart, above {:.3g} ({:.3g} with changed data): {} against {}",
                                   ends, tolerance_, of_ends, quoted(actual), quoted(expected)));
