@@ -43,19 +43,6 @@ std::vector<TextRow> parameter_rows(const Calibration& calibration, const Calibr
   return rows;
 }
 
-std::vector<TextRow> correlation_rows(const Calibration& calibration, const CalibrationResult& result) {
-  std::vector<TextRow> rows{{"correlation"}};
-  for (const FreeParameter& parameter : calibration.free) rows.front().push_back(parameter.key.path);
-  for (std::size_t i = 0; i < calibration.free.size(); ++i) {
-    rows.push_back({calibration.free[i].key.path});
-    for (std::size_t j = 0; j < calibration.free.size(); ++j) {
-      const double value = result.uncertainty.correlation(i, j);
-      rows.back().push_back(std::isfinite(value) ? fmt::format("{:.4f}", value) : "-");
-    }
-  }
-  return rows;
-}
-
 /// Rows of the priors, with the distance of the fit from each.
 std::vector<TextRow> prior_rows(const Calibration& calibration, const CalibrationResult& result) {
   std::vector<TextRow> rows;
@@ -126,7 +113,7 @@ struct TitledTable {
 std::vector<TitledTable> tables_of(const Calibration& calibration, const CalibrationResult& result) {
   std::vector<TitledTable> tables{{"Parameters", parameter_rows(calibration, result)}};
   if (calibration.free.size() > 1 && has_errors(result)) {
-    tables.push_back({"Correlations", correlation_rows(calibration, result)});
+    tables.push_back({"Correlations", correlation_rows(calibration.free, result.uncertainty)});
   }
   if (auto priors = prior_rows(calibration, result); !priors.empty()) tables.push_back({"Priors", std::move(priors)});
   if (!result.procedures.fits.empty()) {
@@ -157,6 +144,7 @@ std::vector<std::string> data_lines(const Calibration& calibration) {
                                    curve.end - curve.begin, describe(curve.layout));
     if (!curve.left_out.empty()) line += fmt::format("; {} rows left out", curve.left_out.size());
     if (curve.machine.offset != 0.0) line += fmt::format("; offset {:g} m", curve.machine.offset);
+    if (curve.machine.force_offset != 0.0) line += fmt::format("; force offset {:g} N", curve.machine.force_offset);
     if (curve.machine.compliance != 0.0) line += fmt::format("; compliance {:g} m/N", curve.machine.compliance);
     if (!curve.machine.forces.empty()) line += "; deflection of the machine by a table";
     lines.push_back(std::move(line));
@@ -202,6 +190,20 @@ void append_lines(std::vector<std::string>& lines, std::string_view text) {
 }
 
 }  // namespace
+
+std::vector<TextRow> correlation_rows(const std::vector<FreeParameter>& free, const Uncertainty& uncertainty) {
+  std::vector<TextRow> rows{{"correlation"}};
+  for (const FreeParameter& parameter : free) rows.front().push_back(parameter.key.path);
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    rows.push_back({free[i].key.path});
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      const double value = uncertainty.correlation(i, j);
+      const bool is_known = std::isfinite(value) && uncertainty.is_determined[i] && uncertainty.is_determined[j];
+      rows.back().push_back(is_known ? fmt::format("{:.4f}", value) : "-");
+    }
+  }
+  return rows;
+}
 
 std::string_view word_of(Bound bound) {
   constexpr std::array<std::string_view, 3> k_words{"", "lower", "upper"};

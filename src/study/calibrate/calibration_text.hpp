@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "study/calibrate/calibration.hpp"
+#include "study/calibrate/text_table.hpp"
 
 namespace monograin {
 
@@ -15,6 +16,10 @@ namespace monograin {
 /// A number to six digits, for comparison with others; a dash if it is undefined.
 [[nodiscard]] std::string shown_number(double value);
 [[nodiscard]] std::string with_unit(double value, const std::string& unit);
+
+/// Correlations of parameters as a table; a dash for those that the data do not determine.
+[[nodiscard]] std::vector<TextRow> correlation_rows(const std::vector<FreeParameter>& free,
+                                                    const Uncertainty& uncertainty);
 
 /// A report in Markdown: data, figure, parameters with intervals, residuals, warnings, sources.
 /// @param has_figure  true if figure.svg lies beside the report

@@ -80,17 +80,7 @@ std::string planned_text(const ExperimentPlan& plan, const ExpectedErrors& error
   }
   std::string text = fmt::format("planned: {}\n{}", planned_names(plan), aligned(rows));
   if (plan.free.size() < 2) return text;
-  rows = {{"correlation"}};
-  for (const FreeParameter& parameter : plan.free) rows.front().push_back(parameter.key.path);
-  for (std::size_t i = 0; i < plan.free.size(); ++i) {
-    rows.push_back({plan.free[i].key.path});
-    for (std::size_t j = 0; j < plan.free.size(); ++j) {
-      const double value = errors.uncertainty.correlation(i, j);
-      rows.back().push_back(std::isfinite(value) && errors.uncertainty.is_determined[i] ? fmt::format("{:.4f}", value)
-                                                                                        : "-");
-    }
-  }
-  return text + '\n' + aligned(rows);
+  return text + '\n' + aligned(correlation_rows(plan.free, errors.uncertainty));
 }
 
 std::string candidates_text(const ExperimentPlan& plan, const IdentifyResult& result) {

@@ -17,6 +17,7 @@
 #include "elastic/hertz.hpp"
 #include "history/run.hpp"
 #include "history/table.hpp"
+#include "study/calibrate/calibration_text.hpp"
 #include "support/refusal.hpp"
 #include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
@@ -812,6 +813,10 @@ TEST_F(CalibrationTest, SaysWhatTheDataDoNotDetermine) {
   EXPECT_NEAR(result.solution.parameters[0] / 1e9, 1.0, 1e-9);
   EXPECT_EQ(result.uncertainty.is_determined, (std::vector{true, false}));
   EXPECT_NE(calibration_text(calibration, result).find("not determined"), std::string::npos);
+  EXPECT_EQ(correlation_rows(calibration.free, result.uncertainty)[1],
+            (TextRow{calibration.free[0].key.path, "1.0000", "-"}));
+  EXPECT_EQ(correlation_rows(calibration.free, result.uncertainty)[2],
+            (TextRow{calibration.free[1].key.path, "-", "-"}));
 }
 
 TEST_F(CalibrationTest, AsManyPointsAsParametersGiveAFitWithoutErrors) {

@@ -21,6 +21,7 @@
 #include "history/run.hpp"
 #include "history/table.hpp"
 #include "study/calibrate/calibration.hpp"
+#include "study/calibrate/calibration_text.hpp"
 #include "study/calibrate/fit_notes.hpp"
 #include "study/calibrate/granule.hpp"
 #include "support/scenario_texts.hpp"
@@ -617,9 +618,12 @@ TEST_F(MachineCalibration, AKnownZeroOfTheLoadCellIsTakenOffTheForce) {
       text = replaced(text, "x = \"displacement[um]\"\ny = \"force[N]\"", "x = \"force[N]\"\ny = \"displacement[um]\"");
     }
     write_text(folder() / "h.toml", text);
-    const CalibrationResult result = calibrate(read_calibration(folder() / "h.toml"));
+    const Calibration calibration = read_calibration(folder() / "h.toml");
+    const CalibrationResult result = calibrate(calibration);
     EXPECT_NEAR(result.solution.parameters[0] / k_hertz_modulus, 1.0, 1e-6) << is_driven;
     EXPECT_NEAR(result.solution.parameters[1], 3e-5, 1e-10) << is_driven;
+    EXPECT_NE(calibration_report(calibration, result, false).find("; force offset 25 N"), std::string::npos)
+        << is_driven;
     EXPECT_NEAR(result.solution.parameters[2], 1e-8, 1e-13) << is_driven;
   }
 }
