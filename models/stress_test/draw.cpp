@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "system/ends.hpp"
 #include "system/number_text.hpp"
 
 namespace monograin {
@@ -34,7 +35,13 @@ void give_rate(DrawnStep& step) {
   step.pace = 1.0 / step.pace;
 }
 
-std::string_view draw_event(Dice& dice, std::span<const Term> events) { return events[dice.below(events.size())].name; }
+std::string_view draw_event(Dice& dice, std::span<const Term> events) {
+  std::vector<std::string_view> names;
+  for (const Term& event : events) {
+    if (!is_end(event.name)) names.push_back(event.name);
+  }
+  return names[dice.below(names.size())];
+}
 
 std::string csv_text(std::string_view headings, const std::vector<std::vector<double>>& rows) {
   std::string text(headings);

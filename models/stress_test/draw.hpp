@@ -67,7 +67,7 @@ template <class Ramp>
 /// Gives a step a rate instead of its duration.
 void give_rate(DrawnStep& step);
 
-/// Name of one of the events, drawn at random.
+/// Name of one of the events that a step may wait for, drawn at random.
 [[nodiscard]] std::string_view draw_event(Dice& dice, std::span<const Term> events);
 
 /// Rows of numbers under a line of headings, as comma-separated text.

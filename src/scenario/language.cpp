@@ -11,6 +11,7 @@
 
 #include "scenario/integrators.hpp"
 #include "scenario/units.hpp"
+#include "system/ends.hpp"
 
 namespace monograin {
 namespace {
@@ -268,13 +269,10 @@ std::vector<KeySpec> loading_keys(const Model& model) {
   };
 }
 
-/// Events with which a step or the run ends anyway: no step can wait for them.
-constexpr std::array<string_view, 3> k_ends{"step-end", "until-met", "limit"};
-
 KeySpec event_key(const Model& model) {
   std::vector<string_view> events;
   for (const Term& event : model.events) {
-    if (std::ranges::find(k_ends, event.name) == k_ends.end()) events.push_back(event.name);
+    if (!is_end(event.name)) events.push_back(event.name);
   }
   return {.name = "event",
           .meaning = "name of an event",
