@@ -138,10 +138,10 @@ def _draw(
         y = _values(run.history, panel, column)
         colour = _COLOURS[(used + k) % len(_COLOURS)]
         name = ": ".join(filter(None, (label, legend)))
-        look = {"color": colour, "marker": _CURVE_MARKS[(used + k) % len(_CURVE_MARKS)], "markersize": 3.5}
+        line = {"color": colour, "marker": _CURVE_MARKS[(used + k) % len(_CURVE_MARKS)], "markersize": 3.5}
         for i, (phase, piece) in enumerate(phases):
             text = name if i == 0 else None
-            axes.plot(x[piece], y[piece], linestyle=_STYLES[phase], markevery=0.15, label=text, **look)
+            axes.plot(x[piece], y[piece], linestyle=_STYLES[phase], markevery=0.15, label=text, **line)
     for name, rows in _events(run.events).items():
         points = [
             (run.events[sheet.column][row] / sheet.scale, _values(run.events, panel, column)[row])
@@ -154,8 +154,8 @@ def _draw(
         if points:
             text = None if name in _marks_in([axes]) else name
             symbol, colour, size = marks[name]
-            look = {"marker": symbol, "color": colour, "markersize": size, "linestyle": "None"}
-            axes.plot(*zip(*points), **look, markerfacecolor="none", label=text, gid=_EVENT + name)
+            style = {"marker": symbol, "color": colour, "markersize": size, "linestyle": "None"}
+            axes.plot(*zip(*points), **style, markerfacecolor="none", label=text, gid=_EVENT + name)
     axes.set_xlabel(sheet.label)
     axes.set_ylabel(panel.label)
     if len(axes.get_legend_handles_labels()[1]) > 1:
