@@ -35,8 +35,9 @@ Json values_json(const CheckedScenario& scenario) {
   Json values = Json::object();
   if (scenario.radius > 0.0) values["particle.radius"] = scenario.radius;
   for (const auto& [key, value] : scenario.material) values["material." + key] = value;
-  for (const auto& [key, option] : scenario.options) {
-    std::visit([&](const auto& value) { values[scenario.model + '.' + key] = value; }, option);
+  for (const auto& option : scenario.options) {
+    Json& value = values[scenario.model + '.' + option.first];
+    std::visit([&value](const auto& own) { value = own; }, option.second);
   }
   return values;
 }

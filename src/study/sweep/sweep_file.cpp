@@ -191,7 +191,10 @@ class SweepReader {
       if (!other.spec) continue;
       if (answer.spec) {
         // A choice that one model accepts must not be refused because another lacks it.
-        answer.spec->choices.insert(answer.spec->choices.end(), other.spec->choices.begin(), other.spec->choices.end());
+        for (const std::string_view choice : other.spec->choices) {
+          std::vector<std::string_view>& known = answer.spec->choices;
+          if (std::ranges::find(known, choice) == known.end()) known.push_back(choice);
+        }
       } else {
         answer = std::move(other);
       }

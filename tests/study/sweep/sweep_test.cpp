@@ -458,6 +458,13 @@ TEST_F(SweepFiles, AnUnknownModelIsTheOnlyFault) {
   }
 }
 
+TEST_F(SweepFiles, AnUnknownModelAmongVariedOnesListsEachModelOnce) {
+  const std::vector<std::string> faults =
+      faults_of("scenario = \"small.toml\"\n[vary]\nmodel = { values = [\"mdr\", \"mdx\", \"hertz\"] }\n");
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].find("nonlocal"), faults[0].rfind("nonlocal")) << faults[0];
+}
+
 TEST_F(SweepFiles, AScenarioNeedNotHaveWhatIsVaried) {
   std::string incomplete = k_scenario;
   incomplete.replace(incomplete.find("poisson_ratio = 0.3"), 19, "");
