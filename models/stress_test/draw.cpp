@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "system/ends.hpp"
+#include "system/awaited_events.hpp"
 #include "system/number_text.hpp"
 
 namespace monograin {
@@ -36,10 +36,7 @@ void give_rate(DrawnStep& step) {
 }
 
 std::string_view draw_event(Dice& dice, std::span<const Term> events) {
-  std::vector<std::string_view> names;
-  for (const Term& event : events) {
-    if (!is_end(event.name)) names.push_back(event.name);
-  }
+  const std::vector<std::string_view> names = events_to_wait_for(events);
   return names[dice.below(names.size())];
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "catalogue.hpp"
+#include "scenario/file_keys.hpp"
 #include "scenario/text_file.hpp"
 #include "scenario/words.hpp"
 
@@ -22,11 +23,7 @@ constexpr std::size_t k_largest_run = std::size_t{256} << 20U;
 
 Json files_json(const CheckedScenario& scenario) {
   Json files = Json::object();
-  for (const auto& [option, curve] : scenario.curves) {
-    files[scenario.model + '.' + option] = {{"name", std::get<std::string>(scenario.options.at(option))},
-                                            {"text", curve.text}};
-  }
-  for (const auto& [name, text] : scenario.loading.files) files["loading." + name] = {{"name", name}, {"text", text}};
+  for (const auto& [key, name, text] : named_files(scenario)) files[key] = {{"name", name}, {"text", text}};
   return files;
 }
 

@@ -28,13 +28,24 @@ void add_tables(const toml::node& node, const std::string& path, const FileTexts
   }
 }
 
-}  // namespace
-
-std::vector<FileKey> file_keys(const CheckedScenario& scenario) {
+std::vector<FileKey> files_of_options(const CheckedScenario& scenario) {
   std::vector<FileKey> keys;
   for (const auto& [option, curve] : scenario.curves) {
     keys.push_back({scenario.model + '.' + option, std::get<std::string>(scenario.options.at(option)), curve.text});
   }
+  return keys;
+}
+
+}  // namespace
+
+std::vector<FileKey> named_files(const CheckedScenario& scenario) {
+  std::vector<FileKey> files = files_of_options(scenario);
+  for (const auto& [name, text] : scenario.loading.files) files.push_back({"loading." + name, name, text});
+  return files;
+}
+
+std::vector<FileKey> file_keys(const CheckedScenario& scenario) {
+  std::vector<FileKey> keys = files_of_options(scenario);
   if (scenario.loading.files.empty()) return keys;
   const toml::table root = parse_document(text_with_overrides(scenario.text, scenario.overrides), {});
   if (const toml::node* loading = root.get("loading")) add_tables(*loading, "loading", scenario.loading.files, keys);

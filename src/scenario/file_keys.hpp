@@ -15,6 +15,9 @@ struct FileKey {
   std::string text;  ///< of the file
 };
 
+/// All files that a scenario names, each once: by their options, and those of its program as `loading.NAME`.
+[[nodiscard]] std::vector<FileKey> named_files(const CheckedScenario& scenario);
+
 /// The keys of all files that a scenario names: of its options, and of the tables that its steps follow.
 [[nodiscard]] std::vector<FileKey> file_keys(const CheckedScenario& scenario);
 

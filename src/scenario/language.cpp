@@ -11,7 +11,7 @@
 
 #include "scenario/integrators.hpp"
 #include "scenario/units.hpp"
-#include "system/ends.hpp"
+#include "system/awaited_events.hpp"
 
 namespace monograin {
 namespace {
@@ -270,10 +270,7 @@ std::vector<KeySpec> loading_keys(const Model& model) {
 }
 
 KeySpec event_key(const Model& model) {
-  std::vector<string_view> events;
-  for (const Term& event : model.events) {
-    if (!is_end(event.name)) events.push_back(event.name);
-  }
+  std::vector<string_view> events = events_to_wait_for(model.events);
   return {.name = "event",
           .meaning = "name of an event",
           .kind = Kind::choice,

@@ -74,7 +74,7 @@ class SweepReader {
     faults_.throw_if_any();
     check_runs();
     faults_.throw_if_any();
-    digest_varied_files();
+    take_varied_files();
     std::vector<std::string> doubts = doubts_about(*scenario_, factors_);
     std::vector<std::string> models = models_;
     if (models.empty()) models.push_back(scenario_tree_["model"].value_or(std::string()));
@@ -121,7 +121,7 @@ class SweepReader {
     }
   }
 
-  /// Keeps a file that determines the results. Several steps may name the same one.
+  /// Keeps a file that determines the results, once. The first run names files that are varied, too.
   void take_file(FileKey file) {
     const auto is_same = [&](const FileKey& other) { return other.path == file.path && other.name == file.name; };
     if (std::ranges::none_of(files_, is_same)) files_.push_back(std::move(file));
@@ -615,10 +615,7 @@ class SweepReader {
     for (std::size_t run = 0; run < runs_.size(); ++run) {
       try {
         const CheckedScenario scenario = scenario_with(*scenario_, factors, runs_[run]);
-        for (const auto& [option, curve] : scenario.curves) {
-          take_file({scenario.model + '.' + option, std::get<std::string>(scenario.options.at(option)), curve.text});
-        }
-        for (const auto& [name, text] : scenario.loading.files) take_file({"loading", name, text});
+        for (FileKey& file : named_files(scenario)) take_file(std::move(file));
         // Runs with other words, such as another configuration, may have other columns.
         if (std::ranges::all_of(factors_, &Factor::is_number)) sweep::check_columns(columns_, scenario, faults_);
         if (bands_) sweep::check_columns(bands_->columns, scenario, faults_);
@@ -633,7 +630,7 @@ class SweepReader {
     for (const Fault& fault : own.value_or(std::vector<Fault>{})) faults_.add(fault.where, fault.message);
   }
 
-  void digest_varied_files() {
+  void take_varied_files() {
     for (std::size_t f = 0; f < factors_.size(); ++f) {
       if (factors_[f].spec.kind != Kind::file) continue;
       std::set<std::string> names;

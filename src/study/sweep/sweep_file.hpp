@@ -40,7 +40,7 @@ struct Sweep {
   std::vector<std::string> doubts{};  ///< values that may not be meant as they are read, a sentence each
   std::string text{};                 ///< of the sweep file
   /// Files that sweep and scenario name, by the keys that name them: scenario (unless it is a table of the sweep file),
-  /// table, calibration, and the scenario's own. Those of its steps have the key loading.
+  /// table, calibration, and the scenario's own as in named_files().
   std::vector<FileKey> files{};
   std::optional<std::uint64_t> seed{};  ///< of a design that is drawn
   std::string digest;  ///< of everything that determines the results: sweep, scenario, tables, program version

@@ -38,9 +38,9 @@ inline constexpr const char* k_sweep_record = "sweep.json";
                                                                  const std::filesystem::path& folder,
                                                                  std::optional<ResultsFormat> wanted);
 
-/// Writes the results of a sweep into a folder, completely or not at all, and removes what
-/// killed processes have written there in part; no other process may write there. The lines of the file before its rows
-/// name program, sweep and design, and have digests of the sweep and of all that follows them.
+/// Writes the results of a sweep into a folder, completely or not at all, and removes what killed processes have
+/// written there in part; no other process may write there. The lines of the file before its rows name
+/// program, sweep and design, and have digests of the sweep and of all that follows them.
 /// @return the file
 /// @throws std::runtime_error naming the file and why it cannot be written
 [[nodiscard]] std::filesystem::path write_results(const Sweep& sweep, const std::filesystem::path& folder,
