@@ -1,7 +1,6 @@
 // `monograin calibrate` and `monograin data`.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "history/staged_folder.hpp"
 #include "scenario/text_file.hpp"
@@ -32,28 +32,6 @@ struct CalibrateOptions {
   bool has_report = false;
 };
 
-/// A line on a terminal that shows the progress of a search.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool is_wanted) : is_shown_(is_wanted && isatty(STDERR_FILENO) == 1) {}
-  ~ProgressLine() {
-    if (percent_ >= 0) say("\r{:20}\r", "");
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void show(double done) {
-    const int percent = static_cast<int>(std::floor(100.0 * done));
-    if (!is_shown_ || percent == percent_) return;
-    percent_ = percent;
-    say("\rsearching {:3} %", percent);
-  }
-
- private:
-  bool is_shown_;
-  int percent_ = -1;
-};
-
 Calibration read(const std::string& file, const CalibrateOptions& options) {
   Calibration calibration = read_calibration(file);
   if (options.confidence) calibration.confidence = *options.confidence;
@@ -65,8 +43,10 @@ CalibrationResult run_calibration(const Calibration& calibration, const fs::path
                                   const CalibrateOptions& options) {
   StagedFolder staged(folder, k_calibration_marker, k_calibration_tables);
   CalibrationResult result = [&] {
-    ProgressLine line(!options.is_quiet);
-    return calibrate(calibration, [&line](double done) { line.show(done); });
+    ProgressBar bar("of the search");
+    return calibrate(calibration, [&](double done) {
+      if (!options.is_quiet) bar.show(done);
+    });
   }();
   const std::string no_figure = write_calibration(calibration, result, staged, options.has_report);
   print_data("{}", calibration_text(calibration, result));
@@ -101,8 +81,10 @@ int run_calibrations(const CalibrateOptions& options) {
   }
   if (staged) {
     const ModelComparison comparison = [&] {
-      ProgressLine line(!options.is_quiet);
-      return compare_models(calibrations, results, [&line](double done) { line.show(done); });
+      ProgressBar bar("of the comparison");
+      return compare_models(calibrations, results, [&](double done) {
+        if (!options.is_quiet) bar.show(done);
+      });
     }();
     print_data("\n{}", comparison_text(calibrations, results, comparison));
     const std::string no_figure = write_comparison(calibrations, results, comparison, *staged, options.has_report);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -23,20 +24,18 @@ bool may_rewrite_lines() {
          terminal != std::string_view("dumb");
 }
 
+void draw(const std::string& text) { std::fputs((k_clear_line + text).c_str(), stderr); }
+
 }  // namespace
 
-std::string progress_text(std::size_t done, std::size_t of, double seconds, const std::string& what) {
-  const double share = of == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(of);
+std::string progress_text(double share, double seconds, const std::string& what) {
   const auto filled = static_cast<std::size_t>(share * k_width);
-  std::string text = fmt::format("[{:<{}}] {:3.0f}%  {}/{} {}", std::string(filled, '#'), k_width,
-                                 static_cast<double>(static_cast<int>(100.0 * share)), done, of, what);
-  if (done == 0 || seconds <= 0.0) return text;
-  const double rate = static_cast<double>(done) / seconds;
-  const auto left = static_cast<long>(static_cast<double>(of - done) / rate + 0.5);
-  text += rate < 100.0 ? fmt::format(", {:.3g} {}/s, ", rate, what) : fmt::format(", {:.0f} {}/s, ", rate, what);
-  text += left < 3600 ? fmt::format("{}:{:02} left", left / 60, left % 60)
-                      : fmt::format("{}:{:02}:{:02} left", left / 3600, left / 60 % 60, left % 60);
-  return text;
+  const std::string text =
+      fmt::format("[{:<{}}] {:3.0f}%  {}", std::string(filled, '#'), k_width, std::floor(100.0 * share), what);
+  if (share == 0.0 || seconds <= 0.0) return text;
+  const auto left = std::lround(seconds * (1.0 - share) / share);
+  return text + (left < 3600 ? fmt::format(", {}:{:02} left", left / 60, left % 60)
+                             : fmt::format(", {}:{:02}:{:02} left", left / 3600, left / 60 % 60, left % 60));
 }
 
 ProgressBar::ProgressBar(std::string what) : what_(std::move(what)), is_shown_(may_rewrite_lines()) {}
@@ -46,11 +45,24 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::show(std::size_t done, std::size_t of) {
+  const std::optional<double> seconds = due();
+  if (!seconds) return;
+  const double rate = static_cast<double>(done) / *seconds;
+  std::string items = fmt::format("{}/{} {}", done, of, what_);
+  if (done > 0)
+    items += rate < 100.0 ? fmt::format(", {:.3g} {}/s", rate, what_) : fmt::format(", {:.0f} {}/s", rate, what_);
+  draw(progress_text(of == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(of), *seconds, items));
+}
+
+void ProgressBar::show(double share) {
+  if (const std::optional<double> seconds = due()) draw(progress_text(share, *seconds, what_));
+}
+
+std::optional<double> ProgressBar::due() {
   const Clock::time_point now = Clock::now();
-  if (!is_shown_ || now - last_ < k_interval) return;
+  if (!is_shown_ || now - last_ < k_interval) return std::nullopt;
   last_ = now;
-  const double seconds = std::chrono::duration<double>(now - start_).count();
-  std::fputs((k_clear_line + progress_text(done, of, seconds, what_)).c_str(), stderr);
+  return std::chrono::duration<double>(now - start_).count();
 }
 
 }  // namespace monograin

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace monograin {
@@ -10,7 +11,7 @@ namespace monograin {
 /// A progress bar. Draws nothing if stderr is no terminal, or if NO_COLOR asks for plain output.
 class ProgressBar {
  public:
-  /// @param what  name of the counted items: "runs"
+  /// @param what  name of the counted items, such as "runs", or of the work
   explicit ProgressBar(std::string what);
   /// Removes the bar.
   ~ProgressBar();
@@ -19,8 +20,14 @@ class ProgressBar {
 
   /// Draws the bar. Must not be called by two threads at once.
   void show(std::size_t done, std::size_t of);
+  /// Draws the bar of work that counts no items.
+  /// @param share  done part of the work, in [0, 1]
+  void show(double share);
 
  private:
+  /// Seconds since the start if it is time to draw the bar anew.
+  [[nodiscard]] std::optional<double> due();
+
   using Clock = std::chrono::steady_clock;
 
   std::string what_;
@@ -29,8 +36,8 @@ class ProgressBar {
   Clock::time_point last_ = start_;
 };
 
-/// The bar's text: `[#####     ]  50%  500/1000 runs, 100 runs/s, 0:05 left`.
+/// Text of a bar: `[#####     ]  50%  searching, 0:05 left`.
 /// @param seconds  since the start
-[[nodiscard]] std::string progress_text(std::size_t done, std::size_t of, double seconds, const std::string& what);
+[[nodiscard]] std::string progress_text(double share, double seconds, const std::string& what);
 
 }  // namespace monograin

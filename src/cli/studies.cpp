@@ -9,6 +9,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/data_folder.hpp"
+#include "cli/progress.hpp"
 #include "cli/terminal.hpp"
 #include "exchange/vtk.hpp"
 #include "figure/column_chart.hpp"
@@ -172,7 +173,10 @@ int list(const AtlasOptions& options) {
 int draw_atlas(const AtlasOptions& options) {
   if (options.only_lists) return list(options);
   const AtlasFolders folders = atlas_folders(options);
-  const std::vector<AtlasFigure> figures = make_atlas(folders.definitions, options.names);
+  const std::vector<AtlasFigure> figures = [&] {
+    ProgressBar bar("figures");
+    return make_atlas(folders.definitions, options.names, [&](auto done, auto of) { bar.show(done, of); });
+  }();
   for (const fs::path& file : write_atlas(figures, folders.output)) say("-> {}\n", file.string());
   auto status = RunStatus::complete;
   for (const AtlasFigure& figure : figures) {

@@ -428,11 +428,14 @@ std::vector<AtlasEntry> list_atlas(const fs::path& definitions) {
   return entries;
 }
 
-std::vector<AtlasFigure> make_atlas(const fs::path& definitions, const std::vector<std::string>& names) {
+std::vector<AtlasFigure> make_atlas(const fs::path& folder, const std::vector<std::string>& names,
+                                    const std::function<void(std::size_t, std::size_t)>& progress) {
   FaultList faults;
   std::vector<AtlasFigure> figures;
-  for (const Definition& definition : read_definitions(chosen_files(definitions, names))) {
+  const std::vector<Definition> definitions = read_definitions(chosen_files(folder, names));
+  for (const Definition& definition : definitions) {
     figures.push_back(FigureMaker(definition, faults).make());
+    if (progress) progress(figures.size(), definitions.size());
   }
   faults.throw_if_any();
   return figures;

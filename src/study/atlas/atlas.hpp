@@ -1,7 +1,9 @@
 /// The atlas: figures and tables computed anew from their definitions.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,12 +64,14 @@ struct AtlasEntry {
 /// Definitions in a folder, by name. @throws ScenarioError for a definition that cannot be read
 [[nodiscard]] std::vector<AtlasEntry> list_atlas(const std::filesystem::path& definitions);
 
-/// Reads definitions (NAME.toml) and computes their curves.
+/// Reads definitions (NAME.toml) of a folder and computes their curves.
 /// @param names  empty: all definitions of the folder
+/// @param progress  called after each figure with the numbers of figures made and in all; may be empty
 /// @throws ScenarioError with the faults of all of them
 /// @throws std::runtime_error when there is no such folder, or no definition of that name in it
-[[nodiscard]] std::vector<AtlasFigure> make_atlas(const std::filesystem::path& definitions,
-                                                  const std::vector<std::string>& names);
+[[nodiscard]] std::vector<AtlasFigure> make_atlas(const std::filesystem::path& folder,
+                                                  const std::vector<std::string>& names,
+                                                  const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 /// Writes the figures with their scripts and data, and the tables as NAME.csv and NAME.md. Each file is written as a
 /// whole or not at all. @return the files with results: figures and tables
