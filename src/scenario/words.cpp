@@ -94,6 +94,24 @@ std::string_view trimmed(std::string_view text, std::string_view blanks) noexcep
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+std::size_t width_of(std::string_view text) noexcept {
+  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
+
+std::vector<std::string> lines_of(std::string_view text, std::size_t width) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (lines.empty() || width_of(lines.back()) + 1 + width_of(word) > width)
+      lines.emplace_back(word);
+    else
+      lines.back().append(" ").append(word);
+  }
+  return lines;
+}
+
 std::string in_own_words(const std::exception& error) {
   if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
     const auto& path = file->path2().empty() ? file->path1() : file->path2();

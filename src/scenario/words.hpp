@@ -1,10 +1,12 @@
-/// Words in messages: suggestions for misspelt words, lists, and safe output of a user's text.
+/// Words in messages: suggestions for misspelt words, lists, lines of text, and safe output of a user's text.
 #pragma once
 
+#include <cstddef>
 #include <exception>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace monograin {
 
@@ -29,6 +31,12 @@ inline constexpr double k_end_of_integers = 1e15;
 
 /// The text with its control characters replaced, shortened if it is long.
 [[nodiscard]] std::string shown(std::string_view text);
+
+/// Number of characters of a text in UTF-8.
+[[nodiscard]] std::size_t width_of(std::string_view text) noexcept;
+
+/// A text in lines of at most `width` characters, broken between words; a longer word has a line of its own.
+[[nodiscard]] std::vector<std::string> lines_of(std::string_view text, std::size_t width);
 
 /// Message of an exception. For exceptions of a library, in words of this program: a path with the system's reason, or
 /// a lack of memory.

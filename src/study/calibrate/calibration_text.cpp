@@ -21,25 +21,34 @@ namespace {
 namespace fs = std::filesystem;
 using Bound = LeastSquaresSolution::Bound;
 
+/// A number to the place of the second digit of its error; to six digits without one.
+std::string rounded(double value, double error) {
+  if (!(error > 0.0) || !std::isfinite(error)) return shown_number(value);
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(error)));
+  const bool is_readable = decimals >= 0 && decimals <= 6 && std::abs(value) < 1e6;
+  return is_readable ? fmt::format("{:.{}f}", value, decimals) : shown_number(value);
+}
+
 std::vector<TextRow> parameter_rows(const Calibration& calibration, const CalibrationResult& result) {
   const std::string level = fmt::format("{:g} % interval", 100.0 * result.uncertainty.level);
-  std::vector<TextRow> rows{{"parameter", "SI", "value", "std. error", level, ""}};
+  std::vector<TextRow> rows{{"parameter", "value", "std. error", level}};
   for (std::size_t k = 0; k < calibration.free.size(); ++k) {
     const FreeParameter& parameter = calibration.free[k];
-    const auto own = [&](double si) { return si / parameter.unit_factor; };
+    const double error = result.uncertainty.standard_error(k) / parameter.unit_factor;
+    const std::string unit = parameter.unit.empty() ? "" : ' ' + parameter.unit;
+    const auto own = [&](double si) { return rounded(si / parameter.unit_factor, error); };
     const auto [lower, upper, is_cut_below, is_cut_above] = result.intervals[k];
-    const Bound bound = result.solution.bounds[k];
-    std::string remark;
-    if (bound != Bound::none) remark = fmt::format("at its {} bound", word_of(bound));
-    if (!result.uncertainty.is_determined[k]) remark = "not determined";
-    rows.push_back({parameter.key.path, fmt::format("{:.10g}", result.solution.parameters[k]),
-                    with_unit(own(result.solution.parameters[k]), parameter.unit),
-                    with_unit(own(result.uncertainty.standard_error(k)), parameter.unit),
-                    std::isfinite(lower)
-                        ? fmt::format("{} ... {}", shown_number(own(lower)), with_unit(own(upper), parameter.unit))
-                        : "-",
-                    remark});
+    const bool has_error = std::isfinite(error);
+    rows.push_back({parameter.key.path, own(result.solution.parameters[k]) + unit,
+                    has_error ? rounded(error, error) + unit : "-",
+                    std::isfinite(lower) ? fmt::format("{} ... {}{}", own(lower), own(upper), unit) : "-"});
+    if (const Bound bound = result.solution.bounds[k]; !result.uncertainty.is_determined[k])
+      rows.back().emplace_back("not determined");
+    else if (bound != Bound::none)
+      rows.back().push_back(fmt::format("at its {} bound", word_of(bound)));
   }
+  const auto has_remark = [&](const TextRow& row) { return row.size() > rows.front().size(); };
+  if (std::ranges::any_of(rows, has_remark)) rows.front().emplace_back();
   return rows;
 }
 
@@ -157,28 +166,18 @@ std::vector<std::string> data_lines(const Calibration& calibration) {
 
 constexpr std::size_t k_line_length = 116;  // of a report's page
 
-/// Appends a text, broken between words into lines that fit.
-void append_wrapped(std::vector<std::string>& lines, std::string_view text, std::string_view indent = "") {
-  std::string line;
-  bool has_word = false;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    const std::string_view word = text.substr(at, end - at);
-    if (has_word && line.size() + 1 + word.size() > k_line_length) {
-      lines.push_back(std::exchange(line, std::string(indent)));
-      has_word = false;
-    }
-    if (std::exchange(has_word, true)) line += ' ';
-    line += word;
-    at = end + 1;
-  }
-  lines.push_back(line);
+void append_wrapped(std::vector<std::string>& lines, std::string_view text) {
+  std::ranges::move(lines_of(text, k_line_length), std::back_inserter(lines));
 }
 
 void append_list(std::vector<std::string>& lines, const std::string& title, const std::vector<std::string>& entries) {
   if (entries.empty()) return;
   lines.insert(lines.end(), {"", title});
-  for (const std::string& entry : entries) append_wrapped(lines, "- " + entry, "  ");
+  for (const std::string& entry : entries) {
+    const char* mark = "- ";
+    for (const std::string& line : lines_of(entry, k_line_length - 2))
+      lines.push_back(std::exchange(mark, "  ") + line);
+  }
 }
 
 void append_lines(std::vector<std::string>& lines, std::string_view text) {

@@ -293,13 +293,14 @@ std::string data_text(const DataReport& report) {
   const auto line = [](std::size_t number) {
     return number > 0 ? fmt::format("line {}", number) : std::string("none");
   };
+  const bool has_units = std::ranges::any_of(layout.units, [](const std::string& unit) { return !unit.empty(); });
   std::string text = report.file + '\n';
   for (const auto& [what, value] : std::vector<std::pair<const char*, std::string>>{
            {"encoding", layout.encoding},
            {"separator", std::string(separator_word(layout.separator))},
            {"decimal", layout.decimal == '.' ? "point" : "comma"},
            {"headings", line(layout.heading_line)},
-           {"units", line(layout.unit_line)},
+           {"units", layout.unit_line == 0 && has_units ? "in the headings" : line(layout.unit_line)},
            {"rows", fmt::format("{}{}", report.lines.size(),
                                 report.lines.empty()
                                     ? ""

@@ -3,15 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "scenario/words.hpp"
+
 namespace monograin {
-namespace {
-
-std::size_t width_of(const std::string& cell) {
-  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
-  return static_cast<std::size_t>(std::ranges::count_if(cell, begins_character));
-}
-
-}  // namespace
 
 std::string aligned(const std::vector<TextRow>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
