@@ -25,7 +25,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import textwrap
 import tomllib
 import types
 from xml.etree import ElementTree
@@ -359,8 +358,10 @@ def sections_of(text):
             name, _, rest = line.partition(": ")
             current = name.strip()
             sections.setdefault(current, []).extend([rest] if rest else [])
-        elif line.strip():
+        elif re.match(r"  (\S| {27}\")", line):
             sections[current].append(line)
+        elif line.strip():
+            sections[current][-1] += " " + line.strip()
     return sections
 
 
@@ -516,7 +517,7 @@ def write_models(program, schema, ready):
         page += "\n## Events\n\n" + table(["event", "meaning"], [[f"`{a}`", b] for a, b in events])
         for event, meaning in events:
             events_of.setdefault(event, []).append((name, meaning))
-        page += "\n## Validity\n\n" + "\n".join(f"- {line.strip()}" for line in sections["validity"]) + "\n"
+        page += "\n## Validity\n\n" + "\n".join(line.strip() for line in sections["validity"]) + "\n"
         if name not in ready:
             fail(f"no ready scenario shows model '{name}'")
         particle = list(dict.fromkeys(c for entry in ready[name] for c in entry[2]))
@@ -551,15 +552,6 @@ def write_models(program, schema, ready):
     return names
 
 
-def wrapped(text):
-    """A help text with lines that fit on a page; what a line says goes on where it began."""
-    lines = []
-    for line in text.splitlines():
-        column = re.match(r"( +\S.*?\s{2,})?", line).end()
-        lines += textwrap.wrap(line, 92, subsequent_indent=" " * column, break_on_hyphens=False) or [""]
-    return "\n".join(lines) + "\n"
-
-
 def subcommands_of(help_text):
     """Names of the commands that a help text lists."""
     block = help_text.split("Subcommands:", 1)
@@ -568,7 +560,7 @@ def subcommands_of(help_text):
 
 def write_commands(program):
     top = run(program, "--help")
-    text = f"```text\n{wrapped(top)}```\n"
+    text = f"```text\n{top}```\n"
     commands = subcommands_of(top)
     if not commands:
         fail("'monograin --help' lists no subcommands")
@@ -577,7 +569,7 @@ def write_commands(program):
         for name in names:
             help_text = run(program, *name.split(), "--help")
             names += [f"{name} {part}" for part in subcommands_of(help_text)]
-            text += f"\n## `monograin {name}`\n\n```text\n{wrapped(help_text)}```\n"
+            text += f"\n## `monograin {name}`\n\n```text\n{help_text}```\n"
     write("commands.md", text)
     return commands
 
@@ -657,7 +649,7 @@ def write_laws(program, rows):
     columns = list(dict.fromkeys(column for found in strains.values() for column in found))
     lines = []
     for law in MODEL_WORDS:
-        domain = sections_of(run(program, "models", law))["validity"][0].strip()
+        domain = sections_of(run(program, "models", law))["validity"][0].strip().removeprefix("- ")
         for (name, material), found in strains.items():
             if name != law:
                 continue

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
 #include <span>
 #include <sstream>
@@ -59,6 +60,19 @@ int run_action(const Action& action) {
 }
 
 // --- the command line
+
+/// Help in lines of at most 80 characters.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_description(const CLI::App* app) const override { return list_entry("", 0, app->get_description()); }
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    const std::string head = fmt::format("  {}{}", make_option_name(option, is_positional), make_option_opts(option));
+    return list_entry(head, get_column_width(), make_option_desc(option));
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    return list_entry("  " + command->get_name(), get_column_width(), command->get_description());
+  }
+};
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
@@ -170,7 +184,11 @@ bool names_no_command(const CLI::App& app, int argc, char** argv) {
   const std::vector<const CLI::App*> commands = commands_of(app);
   if (std::ranges::find(commands, argv[1], [](const CLI::App* c) { return c->get_name(); }) != commands.end())
     return false;
-  say("monograin: this version has no command '{}'; it has {}\n", shown(std::string_view(argv[1])), names_of(commands));
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands) names.push_back(command->get_name());
+  const std::string nearest = did_you_mean(argv[1], std::vector<std::string_view>(names.begin(), names.end()));
+  say("monograin: this version has no command '{}'{}\n", shown(std::string_view(argv[1])),
+      nearest.empty() ? "; it has " + names_of(commands) : nearest);
   return true;
 }
 
@@ -195,6 +213,7 @@ int run_program(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("monograin {}", version()));
   app.footer("Example: monograin run --plot");
   app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpFormatter>());
 
   Action action;
   add_run_command(app, action);

@@ -39,20 +39,26 @@ void print_list() {
   for (const Model& model : model_catalogue()) print_data("{:<16}{}\n", model.name, model.summary);
 }
 
+/// Prints the name of a key or a term and what it means.
+void print_key(std::string_view name, const std::string& meaning) {
+  constexpr std::size_t k_column = 27;
+  print_data("{}", list_entry(fmt::format("  {}", name), k_column, meaning));
+}
+
 void print_terms(std::string_view title, std::span<const Term> terms) {
   print_data("\n{}\n", title);
-  for (const Term& term : terms) print_data("  {:<25}{}\n", term.name, term.meaning);
+  for (const Term& term : terms) print_key(term.name, std::string(term.meaning));
 }
 
 template <class Key>
 void print_quantity(const Key& key, const std::string& note) {
-  print_data("  {:<25}{} [{}], in {}; {}\n", key.name, key.meaning, si_unit(key.dimension), to_text(key.range), note);
+  print_key(key.name, fmt::format("{} [{}], in {}; {}", key.meaning, si_unit(key.dimension), to_text(key.range), note));
 }
 
 void print_steps(const Model& model) {
   const auto print_keys = [](std::span<const DriveKey> keys) {
     for (const DriveKey& key : keys) {
-      print_data("  {:<25}{} [{}], for example {}\n", key.name, key.meaning, si_unit(key.dimension), key.example);
+      print_key(key.name, fmt::format("{} [{}], for example {}", key.meaning, si_unit(key.dimension), key.example));
     }
   };
   print_data("\nsteps\n");
@@ -64,14 +70,14 @@ void print_options(std::span<const OptionKey> options) {
   for (const OptionKey& key : options) {
     switch (key.kind) {
       case OptionKey::Kind::choice:
-        print_data("  {:<25}{}: {} (default {})\n", key.name, key.meaning, fmt::join(key.choices, ", "),
-                   key.choices.front());
+        print_key(key.name, fmt::format("{}; one of {} (default {})", key.meaning, fmt::join(key.choices, ", "),
+                                        key.choices.front()));
         break;
       case OptionKey::Kind::toggle:
-        print_data("  {:<25}{}: true, false (default {})\n", key.name, key.meaning, key.default_toggle);
+        print_key(key.name, fmt::format("{}; true or false (default {})", key.meaning, key.default_toggle));
         break;
       case OptionKey::Kind::file:
-        print_data("  {:<25}{}: a file (default none)\n", key.name, key.meaning);
+        print_key(key.name, fmt::format("{}; a file (default none)", key.meaning));
         break;
       case OptionKey::Kind::quantity:
         print_quantity(key, key.default_value ? fmt::format("default {}", *key.default_value) : "optional");
@@ -81,16 +87,22 @@ void print_options(std::span<const OptionKey> options) {
 }
 
 void print_model(const Model& model) {
-  print_data("{}: {}\n", model.name, model.summary);
-  for (const std::string& reference : reference_texts(model)) print_data("reference: {}\n", reference);
-  if (!model.source.empty()) print_data("source: {}\n", model.source);
+  const auto print_head = [](std::string_view what, std::string_view text) {
+    print_data("{}", list_entry(fmt::format("{}:", what), what.size() + 2, text));
+  };
+  print_head(model.name, model.summary);
+  for (const std::string& reference : reference_texts(model)) print_head("reference", reference);
+  if (!model.source.empty()) print_head("source", model.source);
   print_data("\n[material]\n");
   print_options(model.material_options);
   if (!model.presets.empty()) {
-    print_data("  {:<25}a material of the source's tables; keys beside it win. One of\n", "preset");
+    print_key("preset", "a material of the source's tables; keys beside it win. One of");
     for (const Preset& preset : model.presets) {
       const std::string shortfall = shortfall_of(preset, model);
-      print_data("  {:<27}\"{}\", {}{}\n", "", preset.name, preset.source, shortfall.empty() ? "" : "; " + shortfall);
+      constexpr std::size_t k_column = 29;
+      print_data("{}", list_entry("", k_column,
+                                  fmt::format("\"{}\", {}{}", preset.name, preset.source,
+                                              shortfall.empty() ? "" : "; " + shortfall)));
     }
   }
   for (const QuantityKey& key : model.material) {
@@ -100,9 +112,9 @@ void print_model(const Model& model) {
     print_quantity(key, default_text);
   }
   if (model.power_law_of != nullptr) {
-    print_data("  {:<25}{}\n", "ludwik",
-               "instead of strength and hardening_exponent: { yield_stress, strength, exponent = 1/n, eps_max = 1, "
-               "fit = \"both\" or \"exponent\" }");
+    print_key("ludwik",
+              "instead of strength and hardening_exponent: { yield_stress, strength, exponent = 1/n, eps_max = 1, "
+              "fit = \"both\" or \"exponent\" }");
   }
   if (!model.options.empty()) print_data("\n[{}]\n", model.name);
   print_options(model.options);
@@ -116,7 +128,7 @@ void print_model(const Model& model) {
   print_terms("regimes", model.regimes);
   print_terms("events", model.events);
   print_data("\nvalidity\n");
-  for (const std::string_view line : model.domain) print_data("  {}\n", line);
+  for (const std::string_view line : model.domain) print_data("{}", list_entry("  -", 4, line));
 }
 
 /// Prints the constants derived from a scenario's material and particle.
@@ -152,7 +164,9 @@ int run_units() {
   for (const DimensionInfo& info : dimensions()) {
     if (info.units.empty()) continue;
     std::vector<std::string_view> symbols;
-    for (const Unit& unit : info.units) symbols.push_back(unit.symbol);
+    for (const Unit& unit : info.units) {
+      if (!unit.symbol.starts_with("μ")) symbols.push_back(unit.symbol);  // the Greek letter looks like the micro sign
+    }
     if (!info.relative.empty()) symbols.push_back(info.relative);
     const std::string_view noun = info.noun.substr(info.noun.find(' ') + 1);
     print_data("{:<17}{:<11}{}\n", noun, info.si, fmt::join(symbols, ", "));

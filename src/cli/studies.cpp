@@ -221,13 +221,14 @@ int compare(const CompareOptions& options) {
       throw UsageError(in_own_words(error));
     }
   }();
+  say("relative errors of {} against {}, the reference\n", options.other, options.reference);
   const std::string place = "at " + options.x;
-  const std::size_t width = std::max<std::size_t>(14, place.size() + 2);
-  print_data("{:<28}{:>12}{:>{}}{:>12}{:>12}{:>12}{:>10}\n", "column", "L-infinity", place, width, "L2", "area error",
+  const std::size_t width = std::max<std::size_t>(10, place.size() + 2);
+  print_data("{:<26}{:>11}{:>{}}{:>10}{:>12}{:>12}{:>9}\n", "column", "L-infinity", place, width, "L2", "area error",
              "peak error", "covered");
   bool is_above = false;
   for (const CurveDifference& d : comparison.curves) {
-    print_data("{:<28}{:>12.4e}{:>{}.6g}{:>12.4e}{:>12.4e}{:>12.4e}{:>9.1f}%\n", d.y, d.linf, d.linf_at, width, d.l2,
+    print_data("{:<26}{:>11.4g}{:>{}.5g}{:>10.4g}{:>12.4g}{:>12.4g}{:>7.1f} %\n", d.y, d.linf, d.linf_at, width, d.l2,
                d.area_error, d.peak_error, 100.0 * d.coverage);
     is_above = is_above || !(d.linf <= options.tolerance.value_or(k_infinity));
   }

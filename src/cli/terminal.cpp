@@ -4,6 +4,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include "scenario/words.hpp"
+
 namespace monograin {
 
 void prepare_standard_streams() noexcept {
@@ -19,6 +21,21 @@ bool is_output_written() noexcept { return std::fflush(stdout) == 0 && std::ferr
 
 void write_stream(std::FILE* stream, std::string_view text) noexcept {
   static_cast<void>(std::fwrite(text.data(), 1, text.size(), stream));
+}
+
+std::string list_entry(std::string_view head, std::size_t column, std::string_view text) {
+  constexpr std::size_t k_width = 80;
+  std::string entry(head);
+  std::size_t at = width_of(head);
+  if (at > 0 && at >= column) {
+    entry += '\n';
+    at = 0;
+  }
+  for (const std::string& line : lines_of(text, k_width - column)) {
+    entry.append(column - at, ' ').append(line) += '\n';
+    at = 0;
+  }
+  return entry;
 }
 
 void say_warnings(std::string_view name, std::span<const std::string> warnings) {

@@ -33,6 +33,10 @@ void say(fmt::format_string<Args...> format, Args&&... args) {
   write_stream(stderr, fmt::format(format, std::forward<Args>(args)...));
 }
 
+/// An entry of a list: a head, and a text in lines of at most 80 characters that all begin at a column. The text begins
+/// on a new line if the head reaches that column.
+[[nodiscard]] std::string list_entry(std::string_view head, std::size_t column, std::string_view text);
+
 /// Prints warnings about a file or a run, a line each.
 void say_warnings(std::string_view name, std::span<const std::string> warnings);
 

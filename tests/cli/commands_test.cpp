@@ -14,6 +14,7 @@
 #include "cli/command_test.hpp"
 #include "history/run.hpp"
 #include "history/table.hpp"
+#include "support/refusal.hpp"
 #include "support/svg_figure.hpp"
 
 namespace monograin::commands_test {
@@ -570,6 +571,36 @@ TEST_F(Commands, HelpEndsWithAnExample) {
     const Outcome help = monograin(std::string(command) + " --help");
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Example: monograin "), std::string::npos) << command;
+  }
+}
+
+TEST_F(Commands, HelpAndModelsFitATerminalOf80Columns) {
+  std::vector<std::string> commands{"--help",           "run --help",   "plot --help",  "calibrate --help",
+                                    "models --help",    "sweep --help", "data --help",  "export lammps --help",
+                                    "continuum --help", "bench --help", "stress --help"};
+  std::istringstream models(monograin("models").out);
+  for (std::string line; std::getline(models, line);) commands.push_back("models " + line.substr(0, line.find(' ')));
+  ASSERT_GE(commands.size(), 20U);
+  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
+  for (const std::string& command : commands) {
+    std::istringstream text(monograin(command).out);
+    for (std::string line; std::getline(text, line);) {
+      const bool is_to_copy = line.starts_with("Example:");
+      EXPECT_TRUE(is_to_copy || std::ranges::count_if(line, begins_character) <= 80) << command << ": " << line;
+    }
+  }
+}
+
+TEST_F(Commands, ModelsKeepEveryWordOfALongEntry) {
+  std::istringstream words(monograin("models mdr").out);
+  std::string on_one_line;
+  for (std::string word; words >> word;) on_one_line += word + ' ';
+  for (const char* entry :
+       {"elastic_profile indenter of an elastic contact: the unified ellipse or Hertz's parabola; one of ellipse, "
+        "parabola (default ellipse) delta_max_rule",
+        "singular-growth the free surface is used up: the apparent radius would grow without bound volume-limit",
+        "- contact caps do not intersect (event caps-intersect) - with"}) {
+    EXPECT_TRUE(contains(on_one_line, entry)) << entry;
   }
 }
 
