@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING, NamedTuple, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,13 +21,24 @@ _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 _STYLES = {"loading": "-", "unloading": "--", "reloading": ":"}
 # Sparse filled marks of the curves after the first one, which differ in grey print, too.
 _CURVE_MARKS = ("", "o", "^", "s", "D", "p", "v")
-# Each event has the next symbol, colour and size. Events at one point remain visible, as their sizes differ.
-_SYMBOLS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h")
-_SIZES = (5.0, 7.0, 9.0)
-# Begin of the name that the marks of an event have within a figure.
-_EVENT = "event "
+# Symbols and colours of events, as in the figures of gnuplot (src/figure/legend.cpp): the place of a name in the list
+# gives both; other names share the symbol after the last.
+_EVENTS = (
+    *("yield", "load-reversal", "reload", "contact-made", "contact-lost", "fully-plastic", "pull-off", "peel", "stick"),
+    *("growth-on", "growth-off", "zero-porosity", "dent-touched", "low-compressibility", "impingement", "jamming"),
+    *("plastic-softening", "force-extremum", "follow", "retreat", "secondary-onset", "segment-change", "plastic-off"),
+    *("transition", "caps-intersect", "stiffening", "limit", "full", "singular-growth", "volume-limit", "radius-limit"),
+    *("density-limit", "loss-of-uniqueness", "poisson-half", "cap-centre-tensile", "cap-axis-nonpositive"),
+)
+_OPEN_SYMBOLS = ("o", "s", "^", "v", "D", "p", "x", "+", "$*$")
+_FILLED_SYMBOLS = ("o", "s", "^", "v", "D", "p")
+_EVENT_COLOURS = ("#000000", "#909090", "#8B0000")
+_EVENT_SIZE = 6.0
 # Events that are not marked, because the curve itself shows the corners of the program.
 _PROGRAM_EVENTS = ("step-end", "until-met")
+# Size of a panel, and of the texts of a legend below all panels [inch].
+_PANEL_HEIGHT = 3.2
+_LEGEND_LINE, _LEGEND_LETTER, _LEGEND_SAMPLE = 0.2, 0.085, 0.6
 
 
 class _Panel(NamedTuple):
@@ -35,12 +46,6 @@ class _Panel(NamedTuple):
     columns: list[tuple[str, str]]  # legend and column of each curve
     scale: float  # divides the values
     is_area: bool = False  # true: the panel shows pi times the square of the column
-
-
-class _Mark(NamedTuple):
-    symbol: str
-    colour: str
-    size: float
 
 
 class _Sheet(NamedTuple):
@@ -51,7 +56,22 @@ class _Sheet(NamedTuple):
 
 
 class ShownFigure(Figure):  # type: ignore[misc]
-    """A figure that a notebook shows, though pyplot does not manage it."""
+    """A figure that a notebook shows, though pyplot does not manage it. One legend stands below all panels."""
+
+    def show_legend(self, entries: dict[str, Any]) -> None:
+        """Replaces the legend by one with these entries, and makes the figure as much taller as it needs."""
+        for legend in list(self.legends):
+            legend.remove()
+        engine = self.get_layout_engine()
+        left, bottom, width, height = engine.get()["rect"]
+        panels = self.get_figheight() * height
+        entry = _LEGEND_SAMPLE + _LEGEND_LETTER * max(map(len, entries), default=0)
+        columns = max(1, min(len(entries), int(self.get_figwidth() / entry)))
+        strip = _LEGEND_LINE * (-(-len(entries) // columns) + 1) if len(entries) > 1 else 0.0
+        self.set_figheight(panels + strip)
+        engine.set(rect=(left, strip / (panels + strip), width, panels / (panels + strip)))
+        if len(entries) > 1:
+            self.legend(entries.values(), entries.keys(), loc="lower center", ncol=columns, fontsize="small")
 
     def _repr_png_(self) -> bytes:
         content = io.BytesIO()
@@ -80,9 +100,9 @@ def of_run(
         raise ValueError("the run has no curve to draw")
     places = _places(axes, len(panels))
     figure: Figure = places[0].figure
-    marks = _marks(figure, run.events)
     for place, panel in zip(places, panels):
-        _draw(place, run, sheet, panel, _phases(path), marks, label)
+        _draw(place, run, sheet, panel, _phases(path), label)
+    _show_legend(figure, places)
     return figure
 
 
@@ -107,7 +127,7 @@ def _places(axes: Union[Axes, Sequence[Axes], None], count: int) -> list[Axes]:
     """Returns axes for some panels: those that are given, or those of a new figure."""
     if axes is None:
         rows = (count + 1) // 2
-        figure = ShownFigure(figsize=(8.0 if count > 1 else 5.0, 3.2 * rows), layout="constrained")
+        figure = ShownFigure(figsize=(8.0 if count > 1 else 5.0, _PANEL_HEIGHT * rows), layout="constrained")
         made = [figure.add_subplot(rows, min(2, count), place + 1) for place in range(count)]
         for place in made:
             # Numbers in metres would overlap.
@@ -128,7 +148,6 @@ def _draw(
     sheet: _Sheet,
     panel: _Panel,
     phases: list[tuple[str, slice]],
-    marks: dict[str, _Mark],
     label: str,
 ) -> None:
     x = run[sheet.column] / sheet.scale
@@ -152,33 +171,34 @@ def _draw(
             if _concerns(run.events, row, column)
         ]
         if points:
-            text = None if name in _marks_in([axes]) else name
-            symbol, colour, size = marks[name]
-            style = {"marker": symbol, "color": colour, "markersize": size, "linestyle": "None"}
-            axes.plot(*zip(*points), **style, markerfacecolor="none", label=text, gid=_EVENT + name)
+            axes.plot(*zip(*points), **_mark(name), linestyle="None", label=name)
     axes.set_xlabel(sheet.label)
     axes.set_ylabel(panel.label)
-    if len(axes.get_legend_handles_labels()[1]) > 1:
-        axes.legend(fontsize="small")
 
 
-def _marks(figure: Figure, events: Table) -> dict[str, _Mark]:
-    """Returns the mark of each event of a run, equal in all panels, and the marks that the figure has already."""
-    marks = _marks_in(figure.axes)
-    for name in _events(events):
-        count = len(marks)
-        colour = _COLOURS[-1 - count % len(_COLOURS)]
-        marks.setdefault(name, _Mark(_SYMBOLS[count % len(_SYMBOLS)], colour, _SIZES[count % len(_SIZES)]))
-    return marks
+def _mark(event: str) -> dict[str, Any]:
+    """Returns symbol, colour and size of an event."""
+    place = _EVENTS.index(event) if event in _EVENTS else len(_EVENTS)
+    turn, symbol = divmod(place, len(_OPEN_SYMBOLS) + len(_FILLED_SYMBOLS))
+    colour = _EVENT_COLOURS[turn % len(_EVENT_COLOURS)]
+    look = {"color": colour, "markersize": _EVENT_SIZE}
+    if symbol < len(_OPEN_SYMBOLS):
+        return {**look, "marker": _OPEN_SYMBOLS[symbol], "markerfacecolor": "none"}
+    return {**look, "marker": _FILLED_SYMBOLS[symbol - len(_OPEN_SYMBOLS)]}
 
 
-def _marks_in(places: Sequence[Axes]) -> dict[str, _Mark]:
-    """Returns the mark of each event that axes show."""
-    lines = [line for place in places for line in place.lines if str(line.get_gid()).startswith(_EVENT)]
-    return {
-        line.get_gid().removeprefix(_EVENT): _Mark(line.get_marker(), line.get_color(), line.get_markersize())
-        for line in lines
-    }
+def _show_legend(figure: Figure, places: Sequence[Axes]) -> None:
+    """Shows one legend of all panels, curves before events: below them, or in the first panel of another's figure."""
+    is_own = isinstance(figure, ShownFigure)
+    found = [item for place in (figure.axes if is_own else places) for item in zip(*place.get_legend_handles_labels())]
+    found.sort(key=lambda item: item[1] in _EVENTS)
+    entries: dict[str, Any] = {}
+    for handle, label in found:
+        entries.setdefault(label, handle)
+    if is_own:
+        figure.show_legend(entries)
+    elif len(entries) > 1:
+        places[0].legend(entries.values(), entries.keys(), fontsize="small")
 
 
 def _in_si(history: Table, x: str, panels: list[_Panel]) -> _Sheet:
@@ -287,9 +307,9 @@ def _events(events: Table) -> dict[str, list[int]]:
 
 
 def _concerns(events: Table, row: int, column: str) -> bool:
-    """True if an event belongs to the contact class of a column. A curve of the particle shows all."""
+    """True if an event belongs to what a column shows: to its contact class, or to the particle."""
     contact, point, _ = column.partition(".")
-    return not point or contact in str(events["class"][row]).split("/")
+    return (contact if point else "") in str(events["class"][row]).split("/")
 
 
 def _phases(x: NDArray[np.float64]) -> list[tuple[str, slice]]:

@@ -361,9 +361,11 @@ class Run:
     ) -> Figure:
         """Draws force, mean pressure, contact area and apparent radius over the displacement of the driven wall.
 
-        Loading is solid, unloading dashed, reloading dotted. Each event has one symbol and colour in all panels. A
-        packing is drawn over its packing fraction, a material point over its axial strain. Quantities are dimensionless
-        if the header of the history has their scales.
+        Loading is solid, unloading dashed, reloading dotted. Events have the symbols of the program's figures. Those of
+        a contact are on its curves, those of the particle on curves of the particle. One legend stands below all
+        panels; in axes of a figure that ``plot`` has not made, it stands in the first of them. A packing is drawn over
+        its packing fraction, a material point over its axial strain. Quantities are dimensionless if the header of the
+        history has their scales.
 
         A notebook shows the figure that the last line of a cell returns. In a loop, hand it to ``display`` of IPython.
         Several runs come into one figure by its axes:

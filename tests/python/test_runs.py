@@ -7,6 +7,7 @@ import gc
 import json
 import pathlib
 import pickle
+import re
 import subprocess
 import sys
 import textwrap
@@ -17,12 +18,12 @@ from numpy.testing import assert_array_equal
 
 import monograin as mg
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENARIOS = mg.scenarios()
 
 
 def test_the_package_brings_every_ready_scenario():
-    root = pathlib.Path(__file__).resolve().parents[2]
-    assert SCENARIOS == sorted(path.stem for path in (root / "scenarios").glob("*.toml"))
+    assert SCENARIOS == sorted(path.stem for path in (ROOT / "scenarios").glob("*.toml"))
     assert (mg.scenario_folder() / "calibrate" / "uniaxial.csv").is_file()
 
 
@@ -524,8 +525,10 @@ def test_runs_share_the_axes_of_a_figure_and_differ_in_colour(die):
     (axes,) = figure.axes
     colours = {line.get_label(): line.get_color() for line in axes.lines}
     assert colours["hard"] != colours["soft"]
-    legend = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert len(legend) == len(set(legend))
+    assert axes.get_legend() is None
+    (legend,) = figure.legends
+    texts = [text.get_text() for text in legend.get_texts()]
+    assert len(texts) == len(set(texts)) and {"hard", "soft", "yield"} <= set(texts)
     with pytest.raises(ValueError, match="1 for 2 panels"):
         softer.plot(["axial.force", "axial.pressure"], axes=axes)
 
@@ -534,15 +537,67 @@ def test_an_event_has_one_mark_in_all_panels_of_a_figure(die):
     pytest.importorskip("matplotlib")
     figure = die.run().plot()
     die.replace({"material.yield_stress": "30 MPa"}).run().plot(axes=figure.axes)
-    marks: dict[str, set[tuple[str, str, float]]] = {}
+    marks: dict[str, set[tuple[str, str, str]]] = {}
     for axes in figure.axes:
         for line in axes.lines:
             if line.get_linestyle() == "None":
-                marks.setdefault(line.get_gid(), set()).add((line.get_marker(), line.get_color(), line.get_markersize()))
+                look = (line.get_marker(), line.get_markerfacecolor(), line.get_color())
+                marks.setdefault(line.get_label(), set()).add(look)
     assert len(marks) > 5
     assert all(len(found) == 1 for found in marks.values())
-    symbols = [symbol for found in marks.values() for symbol, _, _ in found]
-    assert len(set(symbols)) == len(symbols)
+    looks = [look for found in marks.values() for look in found]
+    assert len(set(looks)) == len(looks)
+    assert marks["load-reversal"] == {("s", "none", "#000000")}
+    assert marks["growth-on"] == {("o", "#000000", "#000000")}
+
+
+def test_symbols_of_events_are_those_of_the_program_s_figures():
+    figure = pytest.importorskip("monograin._figure")
+    source = (ROOT / "src" / "figure" / "legend.cpp").read_text()
+    names = re.search(r"k_events\{(.*?)\};", source, re.DOTALL)[1]
+    assert tuple(re.findall(r'"([^"]+)"', names)) == figure._EVENTS
+    colours = re.search(r"k_event_colours\{(.*?)\};", source)[1]
+    assert tuple("#" + colour for colour in re.findall(r"0x(\w+)u", colours)) == figure._EVENT_COLOURS
+    points = re.search(r"k_points\{(.*?)\};", source)[1].split(", ")
+    # gnuplot's numbers of the symbols of matplotlib: open ones and crosses, then filled ones.
+    numbers = {"o": 6, "s": 4, "^": 8, "v": 10, "D": 12, "p": 14, "x": 2, "+": 1, "$*$": 3}
+    drawn = [numbers[symbol] for symbol in figure._OPEN_SYMBOLS]
+    assert list(map(int, points)) == drawn + [numbers[symbol] + 1 for symbol in figure._FILLED_SYMBOLS]
+
+
+def test_events_of_contacts_are_not_drawn_on_curves_of_the_particle(die):
+    pytest.importorskip("matplotlib")
+    (axes,) = die.run().plot("apparent_radius").axes
+    assert {line.get_label() for line in axes.lines if line.get_linestyle() == "None"} == {"growth-on", "growth-off"}
+    (axes,) = mg.scenario("packing").run().plot("stress").axes
+    assert "jamming" in {line.get_label() for line in axes.lines}
+
+
+def test_the_legend_of_a_figure_stands_below_all_panels(die):
+    pytest.importorskip("matplotlib")
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure = die.run().plot(label="hard")
+    height = figure.get_figheight()
+    die.replace({"material.yield_stress": "30 MPa"}).run().plot(axes=figure.axes, label="soft")
+    assert figure.get_figheight() > height
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    (legend,) = figure.legends
+    box = legend.get_window_extent(canvas.get_renderer())
+    assert box.y1 <= min(axes.get_tightbbox(canvas.get_renderer()).y0 for axes in figure.axes)
+    assert 0.0 <= box.x0 and box.x1 <= figure.bbox.width and 0.0 <= box.y0
+    assert all(axes.get_legend() is None for axes in figure.axes)
+
+
+def test_axes_of_a_figure_of_the_caller_have_their_legend_in_the_first_panel(die):
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    assert die.run().plot(axes=figure.subplots(2, 2)) is figure
+    legends = [axes.get_legend() for axes in figure.axes]
+    assert legends[0] and not any(legends[1:]) and not figure.legends
 
 
 def test_a_column_that_events_lack_is_drawn_without_them(die):
