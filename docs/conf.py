@@ -1,5 +1,6 @@
 """Configuration of the documentation site. `tools/docs` builds it."""
 
+import ast
 import pathlib
 import re
 
@@ -28,7 +29,12 @@ extensions = [
     "breathe",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["generated/*.md", "generated/python-examples"]  # parts of pages, and what they are made from
+exclude_patterns = [
+    # Parts of pages, and what they are made from.
+    "generated/*.md",
+    "generated/python-examples",
+    "howto/python-examples/sg_execution_times.rst",
+]
 language = "en"
 nitpicky = True
 # Names of the standard library and of numpy, whose own sites are not asked.
@@ -80,7 +86,9 @@ autodoc_type_aliases = {"ArrayLike": "ArrayLike"}
 
 
 def figures_of_block(_block, variables, gallery):
-    """Saves the figures that a block of a script has made; pyplot knows none of them."""
+    """Saves the figures that a block of a script has made; pyplot knows none of them. The script describes them."""
+    script = ast.parse(pathlib.Path(variables["src_file"]).read_text(encoding="utf-8"))
+    described = " ".join(ast.get_docstring(script).split("\n\n")[1].replace("`", "").split())
     shown = variables.setdefault("shown_figures", [])
     paths = []
     for value in list(variables["example_globals"].values()):
@@ -88,7 +96,7 @@ def figures_of_block(_block, variables, gallery):
             shown.append(value)
             paths.append(next(variables["image_path_iterator"]))
             value.savefig(paths[-1], dpi=150)
-    return figure_rst(paths, gallery["src_dir"])
+    return figure_rst(paths, gallery["src_dir"], described)
 
 
 sphinx_gallery_conf = {

@@ -1,5 +1,6 @@
-// Adds your own law to monograin: a linear spring at every wall. model_of() makes it a model like the built-in ones,
-// with keys, direct solution, integrators, events and energies.
+// Adds your own law to monograin: a linear spring at every wall. model_of() makes it a
+// model like the built-in ones, with keys, direct solution, integrators, events and
+// energies.
 #include <monograin/laws/contacts/model_of.hpp>
 #include <monograin/laws/stress_test/draw.hpp>
 #include <monograin/monograin.hpp>
@@ -12,7 +13,8 @@ namespace mg = monograin;
 
 /// Law of one contact. Lengths are over R0, forces over unit_force().
 struct Spring {
-  struct Branch {};  ///< memory of a contact: empty, because unloading retraces the loading line
+  struct Branch {
+  };  ///< memory of a contact: empty, because unloading retraces the loading line
   static constexpr std::array<std::string_view, 2> k_regimes{"open", "elastic"};
   double stiffness = 1.0;  ///< k [Pa]: force/(R0 displacement)
 
@@ -26,10 +28,12 @@ struct Spring {
   int regime(Branch, bool touches) const { return touches ? 1 : 0; }
 };
 
-constexpr std::array k_material{
-    mg::QuantityKey{"stiffness", "force over R0 and displacement", mg::Dimension::stress, mg::k_positive}};
-constexpr std::array k_regimes{mg::Term{"open", "no force"},
-                               mg::Term{"elastic", "force in proportion to displacement"}};
+constexpr std::array k_material{mg::QuantityKey{"stiffness",
+                                                "force over R0 and displacement",
+                                                mg::Dimension::stress, mg::k_positive}};
+constexpr std::array k_regimes{
+    mg::Term{"open", "no force"},
+    mg::Term{"elastic", "force in proportion to displacement"}};
 constexpr std::array<std::string_view, 1> k_domain{"small displacements; not checked"};
 
 Spring law_of(const mg::ModelInput& input) { return {input.material("stiffness")}; }
@@ -56,6 +60,7 @@ int main() {
       .set("loading.steps[0].displacement", "0.1 R0")
       .set("loading.steps[0].duration", "1 s");
   const mg::RunResult result = mg::run(scenario);
-  std::printf("%s, force %.17g N, expected %.17g N\n", std::string(mg::to_string(result.status)).c_str(),
+  std::printf("%s, force %.17g N, expected %.17g N\n",
+              std::string(mg::to_string(result.status)).c_str(),
               result.history["axial.force"].back(), 20e6 * 0.01 * 0.001);
 }

@@ -1,4 +1,5 @@
-// Builds a scenario key by key, runs it, reads its curves, and compares them with those of a softer particle.
+// Builds a scenario key by key, runs it, reads its curves, and compares them with those
+// of a softer particle.
 #include <monograin/monograin.hpp>
 
 #include <algorithm>
@@ -19,15 +20,18 @@ int main() {
       .set("loading.steps[0].duration", "1 s")
       .set("loading.steps[1].force", 0.0)
       .set("loading.steps[1].duration", "1 s");
-  for (const mg::Fault& fault : scenario.validate()) std::printf("%s\n", fault.message.c_str());
+  for (const mg::Fault& fault : scenario.validate())
+    std::printf("%s\n", fault.message.c_str());
 
   const mg::RunResult hard = mg::run(scenario);
   const std::span<const double> force = hard.history["axial.force"];
-  std::printf("%s: %zu rows, %zu events, largest force %.6g N\n", std::string(mg::to_string(hard.status)).c_str(),
-              hard.history.row_count(), hard.events.row_count(), *std::max_element(force.begin(), force.end()));
+  std::printf("%s: %zu rows, %zu events, largest force %.6g N\n",
+              std::string(mg::to_string(hard.status)).c_str(), hard.history.row_count(),
+              hard.events.row_count(), *std::max_element(force.begin(), force.end()));
 
   const mg::RunResult soft = mg::run(scenario.set("material.yield_stress", "40 MPa"));
-  for (const mg::CurveDifference& d : mg::compare(hard.history, soft.history, "time", "axial.force").curves) {
+  for (const mg::CurveDifference& d :
+       mg::compare(hard.history, soft.history, "time", "axial.force").curves) {
     std::printf("%s differs by %.3g of its largest value\n", d.y.c_str(), d.linf);
   }
   hard.save("runs/from-cpp");

@@ -19,11 +19,18 @@ try:
 except ImportError:
     sys.exit("emcee is missing (Debian package python3-emcee)")
 
-parser = argparse.ArgumentParser(description="The posterior of two material constants by a Markov chain.")
-parser.add_argument("--steps", type=int, default=1000, help="of every walker [%(default)s]")
-parser.add_argument("--walkers", type=int, default=32, help="[%(default)s]")
-parser.add_argument("--seed", type=int, default=1, help="[%(default)s]")
-parser.add_argument("--tolerance", type=float, help="fail if a standard error differs by more than this share, e.g. 0.01")
+parser = argparse.ArgumentParser(
+    description="The posterior of two material constants by a Markov chain."
+)
+argument = parser.add_argument
+argument("--steps", type=int, default=1000, help="of every walker [%(default)s]")
+argument("--walkers", type=int, default=32, help="[%(default)s]")
+argument("--seed", type=int, default=1, help="[%(default)s]")
+argument(
+    "--tolerance",
+    type=float,
+    help="fail if a standard error differs by more than this share, e.g. 0.01",
+)
 options = parser.parse_args()
 
 # %%
@@ -88,7 +95,8 @@ def residuals(values):
     return run["axial.force"][run["row"] == 0][-len(measured) :] - measured
 
 
-noise = np.sqrt((residuals(values) ** 2).sum() / calibration.info["statistics"]["degrees_of_freedom"])
+degrees_of_freedom = calibration.info["statistics"]["degrees_of_freedom"]
+noise = np.sqrt((residuals(values) ** 2).sum() / degrees_of_freedom)
 
 
 def log_posterior(values):
@@ -106,12 +114,14 @@ def log_posterior(values):
 
 np.random.seed(options.seed)
 start = values + errors * np.random.standard_normal((options.walkers, len(values)))
-sampler = emcee.EnsembleSampler(options.walkers, len(values), log_posterior, moves=emcee.moves.KDEMove())
+sampler = emcee.EnsembleSampler(
+    options.walkers, len(values), log_posterior, moves=emcee.moves.KDEMove()
+)
 sampler.run_mcmc(start, options.steps)
 
 chain = sampler.get_chain(discard=options.steps // 10, flat=True)
 independent = len(chain) / sampler.get_autocorr_time(tol=0).max()
-print(f"{options.walkers * options.steps} runs, {independent:.0f} independent samples, ", end="")
+print(f"{options.walkers * options.steps} runs, {independent:.0f} independent samples,")
 print(f"each standard deviation known to {100.0 / np.sqrt(2.0 * independent):.1f} %")
 
 # %%
@@ -121,10 +131,13 @@ print(f"each standard deviation known to {100.0 / np.sqrt(2.0 * independent):.1f
 mean, deviation = chain.mean(axis=0), chain.std(axis=0, ddof=1)
 differences = deviation / errors - 1.0
 for k, (key, parameter) in enumerate(parameters.items()):
-    print(f"{key}: {parameter.value:.6g} +- {parameter.standard_error:.4g} by the fit,", end=" ")
-    print(f"{mean[k]:.6g} +- {deviation[k]:.4g} by the chain ({100.0 * differences[k]:+.2f} %)")
-correlation = np.corrcoef(chain.T)[0, 1]
-print(f"correlation: {calibration.correlation[0, 1]:.4f} by the fit, {correlation:.4f} by the chain")
+    print(key)
+    print(f"  {parameter.value:.6g} +- {parameter.standard_error:.4g} by the fit")
+    share = 100.0 * differences[k]
+    print(f"  {mean[k]:.6g} +- {deviation[k]:.4g} by the chain ({share:+.2f} %)")
+print("correlation")
+print(f"  {calibration.correlation[0, 1]:.4f} by the fit")
+print(f"  {np.corrcoef(chain.T)[0, 1]:.4f} by the chain")
 if options.tolerance is not None and abs(differences).max() > options.tolerance:
     sys.exit(f"a standard deviation differs by more than {100.0 * options.tolerance:g} %")
 
@@ -136,8 +149,8 @@ axes = figure.add_subplot()
 axes.plot(chain[:, 0] / 1e9, chain[:, 1] / 1e6, ",", label="chain")
 factor = np.linalg.cholesky(np.outer(errors, errors) * calibration.correlation)
 angle = np.linspace(0.0, 2.0 * np.pi, 200)
-ellipse = values + 2.0 * (factor @ [np.cos(angle), np.sin(angle)]).T
-axes.plot(ellipse[:, 0] / 1e9, ellipse[:, 1] / 1e6, label="fit, twice the standard errors")
+ellipse = values[:, np.newaxis] + 2.0 * (factor @ [np.cos(angle), np.sin(angle)])
+axes.plot(ellipse[0] / 1e9, ellipse[1] / 1e6, label="fit, twice the standard errors")
 axes.set(xlabel="Young's modulus [GPa]", ylabel="Yield stress [MPa]")
 axes.legend(fontsize="small", loc="upper left")
 figure

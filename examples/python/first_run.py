@@ -2,7 +2,7 @@
 A first run
 ===========
 
-Load a scenario, change it, run it, look at its curves and events, keep it.
+Load a die compaction, change its material, run it, look at its curves and events, and keep it.
 """
 
 import argparse
@@ -10,7 +10,9 @@ import argparse
 import monograin as mg
 
 parser = argparse.ArgumentParser(description="A first run.")
-parser.add_argument("-o", "--output", default="runs/first", help="folder of the run [%(default)s]")
+parser.add_argument(
+    "-o", "--output", default="runs/first", help="folder of the run [%(default)s]"
+)
 options = parser.parse_args()
 
 # %%
@@ -26,7 +28,8 @@ print(run)
 # Every column of the history is a numpy array, in SI units:
 
 force, displacement = run["axial.force"], run["axial.displacement"]
-print(f"largest force {force.max():.1f} {run.units['axial.force']} at {1e3 * displacement[force.argmax()]:.2f} mm")
+print(f"largest force {force.max():.1f} {run.units['axial.force']}", end=" ")
+print(f"at {1e3 * displacement[force.argmax()]:.2f} mm")
 
 # %%
 # Events are the instants at which a regime changes:
@@ -37,8 +40,9 @@ for event in run.events:
 # %%
 # ``compare`` measures the difference of two runs:
 
-difference = mg.compare(scenario.run(), run, x="axial.displacement", y="axial.force").curves[0]
-print(f"against 50 MPa the force differs by up to {100.0 * difference.linf:.0f} % of the largest one")
+comparison = mg.compare(scenario.run(), run, x="axial.displacement", y="axial.force")
+share = 100.0 * comparison.curves[0].linf
+print(f"against 50 MPa the force differs by up to {share:.0f} % of the largest one")
 
 # %%
 # ``save`` writes the files that ``monograin run`` writes, ``plot`` draws the curves with matplotlib:

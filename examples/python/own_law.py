@@ -13,7 +13,9 @@ from matplotlib.figure import Figure
 
 import monograin as mg
 
-parser = argparse.ArgumentParser(description="Tatara's elastic sphere beside the laws of the package.")
+parser = argparse.ArgumentParser(
+    description="Tatara's elastic sphere beside the laws of the package."
+)
 parser.add_argument("--points", type=int, default=8, help="of the table [%(default)s]")
 options = parser.parse_args()
 
@@ -38,7 +40,8 @@ def own_law(contact_radius):
     """Displacement of a wall [m] and force [N] at a contact radius [m]."""
     overlap = contact_radius**2 / RADIUS
     force = mg.laws.hertz.force(modulus, RADIUS, overlap)
-    return overlap - opposite_wall(contact_radius) * force / (np.pi * YOUNGS_MODULUS), force
+    pushed_out = opposite_wall(contact_radius) * force / (np.pi * YOUNGS_MODULUS)
+    return overlap - pushed_out, force
 
 
 # %%
@@ -62,12 +65,15 @@ nonlocal_run = mg.Scenario(
         },
     }
 ).run()
-computed = np.interp(displacement, nonlocal_run["axial.displacement"], nonlocal_run["axial.force"])
+computed = np.interp(
+    displacement, nonlocal_run["axial.displacement"], nonlocal_run["axial.force"]
+)
 
 # %%
 # Both descriptions of the interaction of the walls agree:
 
-print(f"{'delta/R':>8}{'Hertz':>10}{'curved':>10}{'nonlocal':>10}{'own law':>10}   force [N]")
+names = ("Hertz", "curved", "nonlocal", "own law")
+print(f"{'delta/R':>8}" + "".join(f"{name:>10}" for name in names) + "   force [N]")
 for row in zip(displacement / RADIUS, hertz, curved, computed, force):
     print(f"{row[0]:8.4f}" + "".join(f"{value:10.1f}" for value in row[1:]))
 
@@ -76,7 +82,7 @@ for row in zip(displacement / RADIUS, hertz, curved, computed, force):
 
 figure = Figure(figsize=(6.0, 4.0), layout="constrained")
 axes = figure.add_subplot()
-for name, values in (("Hertz", hertz), ("curved sphere", curved), ("nonlocal", computed), ("own law", force)):
+for name, values in zip(names, (hertz, curved, computed, force)):
     axes.plot(displacement / RADIUS, values / hertz, "o-", label=name)
 axes.set(xlabel=r"Displacement $\delta_o/R_0$", ylabel="Force over Hertz's")
 axes.legend(fontsize="small")

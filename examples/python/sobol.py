@@ -22,10 +22,11 @@ except ImportError:
     sys.exit("scipy is missing (Debian package python3-scipy)")
 
 parser = argparse.ArgumentParser(description="Sobol indices of a die compaction.")
-parser.add_argument("--samples", type=int, default=256, help="of each design, a power of two [%(default)s]")
-parser.add_argument("--designs", type=int, default=8, help="independent designs, at least 2 [%(default)s]")
-parser.add_argument("--threads", type=int, default=0, help="0: one for each core [%(default)s]")
-parser.add_argument("--seed", type=int, default=1, help="[%(default)s]")
+argument = parser.add_argument
+argument("--samples", type=int, default=256, help="a power of two [%(default)s]")
+argument("--designs", type=int, default=8, help="at least 2 [%(default)s]")
+argument("--threads", type=int, default=0, help="0: one for each core [%(default)s]")
+argument("--seed", type=int, default=1, help="[%(default)s]")
 options = parser.parse_args()
 
 RANGES = {
@@ -41,10 +42,14 @@ COLUMNS = ["max(axial.force)", "end(apparent_radius)"]
 
 
 def saltelli(samples, inputs, generator):
-    """Samples of the unit cube, of shape (inputs + 2, samples, inputs): A, B, and A with each column of B."""
+    """Samples of the unit cube: A, B, and A with each column of B.
+
+    Their shape is (inputs + 2, samples, inputs).
+    """
     both = stats.qmc.Sobol(2 * inputs, seed=generator).random(samples)
     a, b = both[:, :inputs], both[:, inputs:]
-    return np.array([a, b] + [np.where(np.arange(inputs) == k, b, a) for k in range(inputs)])
+    mixed = [np.where(np.arange(inputs) == k, b, a) for k in range(inputs)]
+    return np.array([a, b, *mixed])
 
 
 # %%
@@ -53,7 +58,10 @@ def saltelli(samples, inputs, generator):
 
 
 def indices(results):
-    """First-order and total indices, of shape (2, inputs, columns), from results in the order of the design."""
+    """First-order and total indices from results in the order of the design.
+
+    Their shape is (2, inputs, columns).
+    """
     a, b, *mixed = results - results.mean(axis=(0, 1))
     variance = np.concatenate([a, b]).var(axis=0)
     first = [(b * (m - a)).mean(axis=0) for m in mixed]
@@ -71,7 +79,8 @@ begin = time.perf_counter()
 estimates = []
 for _ in range(options.designs):
     design = lower + (upper - lower) * saltelli(options.samples, len(RANGES), generator)
-    results = prepared.map(design.reshape(-1, len(RANGES)), COLUMNS, threads=options.threads)
+    samples = design.reshape(-1, len(RANGES))
+    results = prepared.map(samples, COLUMNS, threads=options.threads)
     estimates.append(indices(results.reshape(*design.shape[:2], len(COLUMNS))))
 runs = options.designs * options.samples * (len(RANGES) + 2)
 print(f"{runs} runs in {time.perf_counter() - begin:.2f} s")
@@ -80,22 +89,27 @@ print(f"{runs} runs in {time.perf_counter() - begin:.2f} s")
 # Mean and 95 % confidence interval (Student's t) of each index:
 
 mean = np.mean(estimates, axis=0)
-half = stats.t.ppf(0.975, options.designs - 1) * np.std(estimates, axis=0, ddof=1) / np.sqrt(options.designs)
+error = np.std(estimates, axis=0, ddof=1) / np.sqrt(options.designs)
+half = stats.t.ppf(0.975, options.designs - 1) * error
 for c, column in enumerate(COLUMNS):
     print(f"{column:<26}{'first':>19}{'total':>21}")
     for k, key in enumerate(RANGES):
-        print(f"  {key:<24}" + "".join(f"{mean[o, k, c]:10.5f} +- {half[o, k, c]:.5f}" for o in (0, 1)))
+        cells = [f"{mean[o, k, c]:10.5f} +- {half[o, k, c]:.5f}" for o in (0, 1)]
+        print(f"  {key:<24}" + "".join(cells))
 
 # %%
 # The total index exceeds the first-order one by the share of interactions. The largest force depends on the yield
 # stress most, the final radius on Young's modulus.
 
 figure = Figure(figsize=(8.0, 3.0), layout="constrained")
-for c, (axes, column) in enumerate(zip(figure.subplots(1, len(COLUMNS), sharey=True), COLUMNS)):
-    places = np.arange(len(RANGES))
+places = np.arange(len(RANGES))
+names = [key.removeprefix("material.").replace("_", "\n") for key in RANGES]
+panels = figure.subplots(1, len(COLUMNS), sharey=True)
+for c, (axes, column) in enumerate(zip(panels, COLUMNS)):
     for o, label in enumerate(("first order", "total")):
-        axes.bar(places + 0.4 * o - 0.2, mean[o, :, c], width=0.4, yerr=half[o, :, c], label=label)
-    axes.set_xticks(places, [key.removeprefix("material.").replace("_", "\n") for key in RANGES])
+        at, height, bar = places + 0.4 * o - 0.2, mean[o, :, c], half[o, :, c]
+        axes.bar(at, height, width=0.4, yerr=bar, label=label)
+    axes.set_xticks(places, names)
     axes.set_title(column, fontsize="medium")
 figure.axes[0].set_ylabel("Sobol index")
 figure.axes[0].legend(fontsize="small")

@@ -10,13 +10,17 @@ set, and counts. It also shows what noise of the displacement does to a fit that
 import argparse
 
 import numpy as np
+from matplotlib.figure import Figure
 
 import monograin as mg
 
-parser = argparse.ArgumentParser(description="How often intervals contain the truth, in synthetic experiments.")
-parser.add_argument("--sets", type=int, default=8, help="experiments of each kind [%(default)s]")
-parser.add_argument("--seed", type=int, default=1, help="[%(default)s]")
-parser.add_argument("--all", action="store_true", help="all five kinds of experiments, not only the first two")
+parser = argparse.ArgumentParser(
+    description="How often intervals contain the truth, in synthetic experiments."
+)
+argument = parser.add_argument
+argument("--sets", type=int, default=8, help="experiments of each kind [%(default)s]")
+argument("--seed", type=int, default=1, help="[%(default)s]")
+argument("--all", action="store_true", help="all five kinds of experiments, not only two")
 options = parser.parse_args()
 
 # %%
@@ -54,7 +58,11 @@ def granule(steps):
         {
             "model": "mdr",
             "particle": {"radius": "0.4 mm"},
-            "material": {"youngs_modulus": MODULUS, "poisson_ratio": 0.35, "yield_stress": YIELD_STRESS},
+            "material": {
+                "youngs_modulus": MODULUS,
+                "poisson_ratio": 0.35,
+                "yield_stress": YIELD_STRESS,
+            },
             "loading": {"configuration": "simple", "steps": steps},
             "output": {"points": 60},
         }
@@ -70,20 +78,25 @@ def granule(steps):
 
 
 def errors_and_hits(steps, fits_frame, generator):
-    """Errors of the modulus, over its true value, and whether its interval contains this; of shape (sets, 2)."""
+    """Relative errors of the modulus, and whether its interval contains the true value.
+
+    Both have the shape (sets, 2).
+    """
     scenario = granule(steps)
     history = scenario.run().history
     rows = history["row"] == 0
     force = history["axial.force"][rows]
     travel = history["axial.displacement"][rows] + FRAME * force
-    errors, hits = np.empty((options.sets, 2)), np.empty((options.sets, 2), bool)
+    errors = np.empty((options.sets, 2))
+    hits = np.empty((options.sets, 2), bool)
     for k in range(options.sets):
         data = {
             "displacement[m]": travel + generator.normal(0.0, TRAVEL_NOISE, len(travel)),
             "force[N]": force + generator.normal(0.0, FORCE_NOISE, len(force)),
         }
-        for with_x, noise in enumerate([{}, {"absolute": FORCE_NOISE, "x": TRAVEL_NOISE}]):
-            read = {"file": data, "x": "displacement[m]", "y": "force[N]", "compliance": FRAME}
+        noises = [{}, {"absolute": FORCE_NOISE, "x": TRAVEL_NOISE}]
+        for with_x, noise in enumerate(noises):
+            read = {"file": data, "x": "displacement[m]", "y": "force[N]"}
             free = {
                 "material.youngs_modulus": {"from": "0.1 GPa", "to": "10 GPa"},
                 "material.yield_stress": {"from": "1 MPa", "to": "200 MPa"},
@@ -91,8 +104,9 @@ def errors_and_hits(steps, fits_frame, generator):
             if noise:
                 read["noise"] = noise
             if fits_frame:
-                del read["compliance"]
                 free["data.compliance"] = {"from": 0, "to": "500 nm/N"}
+            else:
+                read["compliance"] = FRAME
             fit = mg.calibrate({"scenario": scenario, "data": read, "free": free})
             modulus = fit.parameters["material.youngs_modulus"]
             errors[k, with_x] = modulus.value / MODULUS - 1.0
@@ -104,11 +118,33 @@ def errors_and_hits(steps, fits_frame, generator):
 # Error of Young's modulus, its scatter, and the share of 95 % intervals that contain the true value: first for fits that
 # do not know of the noise of the displacement, then for fits that do.
 
+kinds = KINDS if options.all else KINDS[:2]
+errors_of = {}
 print(f"{'':30}{'noise of x unknown':>30}{'noise of x given':>30}")
-for name, steps, fits_frame in KINDS if options.all else KINDS[:2]:
-    errors, hits = errors_and_hits(steps, fits_frame, np.random.default_rng(options.seed))
+for name, steps, fits_frame in kinds:
+    generator = np.random.default_rng(options.seed)
+    errors, hits = errors_and_hits(steps, fits_frame, generator)
+    errors_of[name] = 100 * errors
     cells = [
-        f"{100 * mean:.1f} % +- {100 * scatter:.1f} %, {hit} of {len(hits)}"
-        for mean, scatter, hit in zip(errors.mean(axis=0), errors.std(axis=0), hits.sum(axis=0))
+        f"{100 * errors[:, k].mean():.1f} % +- {100 * errors[:, k].std():.1f} %,"
+        f" {hits[:, k].sum()} of {len(hits)}"
+        for k in range(2)
     ]
     print(f"{name:30}{cells[0]:>30}{cells[1]:>30}", flush=True)
+
+# %%
+# Each point is the error of one fit. Unknown noise of the displacement shifts the modulus:
+
+figure = Figure(figsize=(6.0, 1.2 + 0.7 * len(kinds)), layout="constrained")
+axes = figure.add_subplot()
+places = np.arange(len(kinds))
+labels = ("noise of x unknown", "noise of x given")
+for with_x, (label, marker) in enumerate(zip(labels, "os")):
+    x = np.concatenate([errors[:, with_x] for errors in errors_of.values()])
+    y = np.repeat(places + 0.2 * with_x - 0.1, options.sets)
+    axes.plot(x, y, marker, markerfacecolor="none", label=label)
+axes.axvline(0.0, color="0.5", linewidth=0.8)
+axes.set_yticks(places, list(errors_of))
+axes.set(xlabel="Error of Young's modulus [%]", ylim=(len(kinds) - 0.5, -0.5))
+axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=2, fontsize="small")
+figure
