@@ -18,6 +18,7 @@ import concurrent.futures
 import csv
 import importlib.util
 import json
+import math
 import os
 import pathlib
 import re
@@ -159,7 +160,10 @@ def write(name, text, folder=GENERATED):
 # --- keys, from the JSON Schema
 
 
-def number(value):
+def number(value, units=()):
+    """A number as text; an angle in degrees."""
+    if "deg" in units:
+        return f"{math.degrees(value):g}°"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -189,6 +193,7 @@ def range_of(schema):
     upper = part.get("maximum", part.get("exclusiveMaximum"))
     if lower is None or upper is None:
         return ""
+    units = units_of(schema)
     huge, tiny = 1e17, 1e-5  # bounds of the plausible, not of the law
     open_left, open_right = "exclusiveMinimum" in part, "exclusiveMaximum" in part
     is_low, is_high = abs(lower) >= huge, abs(upper) >= huge
@@ -201,10 +206,10 @@ def range_of(schema):
     if is_low and is_high:
         return ""
     if is_high:
-        return ("> " if open_left else ">= ") + number(lower)
+        return ("> " if open_left else ">= ") + number(lower, units)
     if is_low:
-        return ("< " if open_right else "<= ") + number(upper)
-    return f"{'(' if open_left else '['}{number(lower)}, {number(upper)}{')' if open_right else ']'}"
+        return ("< " if open_right else "<= ") + number(upper, units)
+    return f"{'(' if open_left else '['}{number(lower, units)}, {number(upper, units)}{')' if open_right else ']'}"
 
 
 def course_of(schema):
@@ -262,7 +267,7 @@ def key_table(properties, required, skip=(), order=()):
         elif isinstance(default, bool):
             default = f"`{str(default).lower()}`"
         else:
-            default = f"`{number(default)}`"
+            default = f"`{number(default, units_of(schema))}`"
         rows.append([f"`{name}`", schema.get("description", ""), accepts(schema), range_of(schema), default])
     return table(["key", "meaning", "takes", "range", "default"], rows)
 
@@ -455,6 +460,40 @@ def write_limits():
     write("limit-codes.md", table(["code", "message"], rows))
 
 
+def footnotes(texts):
+    """A letter for each text, equal for texts that differ in numbers only, and the list that the letters refer to."""
+    number = r"(?<![\w.])-?\d+(?:\.\d+)?"
+    alike = {}
+    for text in texts:
+        if text:
+            alike.setdefault(re.sub(number, "#", text), []).append([float(n) for n in re.findall(number, text)])
+    letters = {pattern: chr(ord("a") + k) for k, pattern in enumerate(alike)}
+    notes = []
+    for pattern, found in alike.items():
+        spans = iter([" to ".join(dict.fromkeys(f"{n:g}" for n in (min(c), max(c)))) for c in zip(*found)])
+        text = re.sub("#", lambda _, each=spans: next(each), pattern)
+        notes.append(f"- ({letters[pattern]}) {text}\n")
+    return [f"({letters[re.sub(number, '#', text)]})" if text else "" for text in texts], "".join(notes)
+
+
+def short_source(references):
+    """Authors of the first source, without initials: "Edmans and Sinka"."""
+    authors = re.split(r" \((?:\d{4}|n\.d\.)\)", references[0].removeprefix("- "))[0]
+    return re.sub(r"\b[A-Z]\.[ -]?", "", authors).strip()
+
+
+def write_presets(presets):
+    """A row for each material, with a column for each model that has it."""
+    models = list(dict.fromkeys(model for _, _, model, _ in presets))
+    marks, notes = footnotes([lacks for *_, lacks in presets])
+    rows = {}
+    for (preset, source, model, _), mark in zip(presets, marks):
+        rows.setdefault((preset, source), {})[model] = mark or "yes"
+    heading = ["preset", "from", *(f"[`{model}`](/reference/models/{model}.md)" for model in models)]
+    lines = [[f"`{preset}`", source, *(of.get(model, "-") for model in models)] for (preset, source), of in rows.items()]
+    write("presets.md", table(heading, lines) + "\n" + notes)
+
+
 def write_models(program, schema, ready):
     names = []
     rows = []
@@ -488,8 +527,10 @@ def write_models(program, schema, ready):
                 page += "\nA `preset` gives values of keys; keys beside it override them. With its default options, the "
                 page += "model takes these materials as they are, unless the last column says what they lack:\n\n"
                 split = [re.fullmatch(r'"(.*)", ([^;]*)(?:; (.*))?', item).groups("") for item in listed]
-                page += table(["preset", "from", "lacks"], [[f"`{a}`", b, c] for a, b, c in split])
-                presets += [[f"`{a}`", f"[`{name}`](/reference/models/{name}.md)", b, c] for a, b, c in split]
+                marks, notes = footnotes([lacks for _, _, lacks in split])
+                page += table(["preset", "from", "lacks"], [[f"`{a}`", b, m] for (a, b, _), m in zip(split, marks)])
+                page += f"\n{notes}"
+                presets += [(a, f"{short_source(references)}, {b}", name, c) for a, b, c in split]
             if "ludwik" in material["properties"]:
                 ludwik = material["properties"]["ludwik"]
                 page += "\nKeys of the table `ludwik`:\n\n" + key_table(ludwik["properties"], ludwik["required"])
@@ -536,7 +577,7 @@ def write_models(program, schema, ready):
     for unused in [*(set(COLUMNS) - used), *(set(CONTACT_COLUMNS) - used_of_contacts)]:
         fail(f"no ready scenario has the column '{unused}', whose meaning this script knows")
     write("models.md", table(["model", "description"], rows))
-    write("presets.md", table(["preset", "model", "from", "lacks"], presets))
+    write_presets(presets)
     lines = []
     for event in sorted(events_of):
         models_of = {}
@@ -614,6 +655,12 @@ def tenths(value):
     return "-" if value == "nan" else f"{100 * float(value):.1f}"
 
 
+def largest_percent(values):
+    """The largest share in per cent; a hyphen if none was measured."""
+    measured = [float(value) for value in values if value != "nan"]
+    return f"{100 * max(measured):.0f}" if measured else "-"
+
+
 def write_distance_of_cel(rows):
     """Largest and root mean square error of every case that model cel was held against."""
     quantities = ("axial force", "lateral force", "axial area", "lateral area")
@@ -647,25 +694,25 @@ def write_laws(program, rows):
             column = f"{scene}, {row['quantity']}" if row["quantity"] else scene
             strains.setdefault((law, material), {}).setdefault(column, []).append(row)
     columns = list(dict.fromkeys(column for found in strains.values() for column in found))
-    lines = []
+    lines, domains = [], []
     for law in MODEL_WORDS:
         domain = sections_of(run(program, "models", law))["validity"][0].strip().removeprefix("- ")
+        rounded = re.sub(r"\d+\.\d{2,}", lambda found: f"{float(f'{float(found[0]):.3g}'):g}", domain)
+        domains.append([f"`{law}`", rounded.replace("nu^2", "ν²")])
         for (name, material), found in strains.items():
             if name != law:
                 continue
             cells = []
             for column in columns:
                 measured = found.get(column, [])
-                cells.append(" / ".join(tenths(row["largest"] if float(row["coverage"]) >= LEAST_COVERAGE else "nan")
-                                        for row in measured) or "-")
-                back = [float(row["unloading"]) for row in measured if row["unloading"] != "nan"]
-                if back:
-                    cells[-1] += f"; back {100 * max(back):.1f}"
-            lines.append([f"`{law}`", material, *cells, times.get(law), domain])
+                loading = [row["largest"] for row in measured if float(row["coverage"]) >= LEAST_COVERAGE]
+                cells += [largest_percent(loading), largest_percent(row["unloading"] for row in measured)]
+            lines.append([f"`{law}`", material, *cells, times.get(law)])
     missing = set(MODEL_WORDS) - {law for law, _ in strains} | set(MODEL_WORDS) ^ set(times)
     if missing:
         fail(f"plots/laws-fe.csv or plots/laws-cost.csv does not have {', '.join(sorted(missing))}")
-    write("laws.md", table(["law", "material", *columns, "time", "domain"], lines))
+    heading = [f"{column}: {part}" for column in columns for part in ("load", "back")]
+    write("laws.md", table(["law", "material", *heading, "time"], lines) + "\n" + table(["law", "domain"], domains))
 
 
 def write_measurements(program):
@@ -706,9 +753,9 @@ def write_measurements(program):
 
         auto, bdf = at("auto"), at("cvode-bdf")
         ratio = float(bdf["fastest[s]"]) / float(auto["fastest[s]"])
-        lines.append([titles[scene], microseconds(auto["fastest[s]"]), f"{float(auto['curve_error']):.1g}",
+        lines.append([f"`{scene}`", titles[scene], microseconds(auto["fastest[s]"]), f"{float(auto['curve_error']):.1g}",
                       microseconds(bdf["fastest[s]"]), f"{float(bdf['curve_error']):.1g}", f"{ratio:.3g}"])
-    write("cost.md", table(["scene", "`auto`", "its error", "`cvode-bdf`", "its error", "time ratio"], lines))
+    write("cost.md", table(["scene", "title", "`auto`", "its error", "`cvode-bdf`", "its error", "time ratio"], lines))
     write_equal_errors()
 
 
@@ -726,11 +773,45 @@ def write_equal_errors():
     exceptions = [f"{ratio:.3g} times in `{scene}`" for scene, ratio in slow.items() if ratio > USUAL_RATIO]
     but = f", but up to {' and '.join(exceptions)}, at the largest error" if exceptions else ""
     shown = ["scene", "is", "bdf at 1e-04", "bdf at 1e-08", "bdf at its own"]
-    lines = [[row[heading.index(name)] for name in shown] for row in rows]
+    lines = [[f"`{row[0]}`", *(row[heading.index(name)] for name in shown[1:])] for row in rows]
     write("equal-errors.md",
           f"At errors of 1e-4, 1e-6, 1e-8 and 1e-10 the time of `auto` is at most {usual:.3g} times that of the fastest other "
           f"method{but}. The table gives the time of `cvode-bdf`, the standard code for stiff equations, over that of `auto`:\n\n"
           + table(["scene", "`auto` is", "at 1e-4", "at 1e-8", "at the error of `auto`"], lines))
+
+
+def narrow(heading, rows):
+    """Heading and rows of a table of the atlas that fit on a page.
+
+    Leaves out ratios, which follow from other columns, and empty columns. The law that ends a case, and the quantity that
+    begins several headings, have columns of their own.
+    """
+    quantities = list(dict.fromkeys(name.split(": ")[0] for name in heading if ": " in name))
+    if quantities:
+        plain = [k for k, name in enumerate(heading) if ": " not in name]
+        parts = list(dict.fromkeys(name.split(": ")[1] for name in heading if ": " in name))
+        at = {name: k for k, name in enumerate(heading)}
+        rows = [[*(row[k] for k in plain), q, *(row[at[f"{q}: {p}"]] if f"{q}: {p}" in at else "" for p in parts)]
+                for row in rows for q in quantities]
+        heading = [*(heading[k] for k in plain), "quantity", *parts]
+    cases = [re.fullmatch(rf"(?:(.*?):? )??((?:{'|'.join(MODEL_WORDS)})\b.*)", row[0]) for row in rows]
+    if heading[0] == "case" and all(cases):
+        heading = ["case", "law", *heading[1:]]
+        rows = [[*found.groups(""), *row[1:]] for found, row in zip(cases, rows)]
+    kept = [k for k, name in enumerate(heading)
+            if name not in ("slope ratio", "residual ratio") and any(row[k] not in ("", "-") for row in rows)]
+    return [heading[k] for k in kept], [[row[k] for k in kept] for row in rows]
+
+
+def with_narrow_tables(text):
+    """A page of plots/ with its tables of errors made narrower."""
+    def narrowed(found):
+        cells = [[part.strip() for part in line.strip("|").split("|")] for line in found[0].splitlines()]
+        return table(*narrow(cells[0], cells[2:]))
+
+    return re.sub(r"^\| case .*\n(?:\|.*\n)+", narrowed, text, flags=re.MULTILINE).replace(
+        "residual x where y vanishes, and both over those\nof the reference.",
+        "residual x where y vanishes, and both of the\nreference.")
 
 
 def write_tables():
@@ -738,7 +819,7 @@ def write_tables():
     shutil.rmtree(TABLES, ignore_errors=True)
     for file in sorted((ROOT / "plots").glob("*.md")):
         if file.name != "README.md":
-            write(file.name, file.read_text(encoding="utf-8"), TABLES)
+            write(file.name, with_narrow_tables(file.read_text(encoding="utf-8")), TABLES)
 
 
 def draw_comparison(program, scratch):
