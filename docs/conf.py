@@ -4,6 +4,7 @@ import ast
 import pathlib
 import re
 
+from docutils import nodes
 from matplotlib.figure import Figure
 from sphinx.ext import napoleon
 from sphinx_gallery.scrapers import figure_rst
@@ -88,7 +89,8 @@ autodoc_type_aliases = {"ArrayLike": "ArrayLike"}
 def figures_of_block(_block, variables, gallery):
     """Saves the figures that a block of a script has made; pyplot knows none of them. The script describes them."""
     script = ast.parse(pathlib.Path(variables["src_file"]).read_text(encoding="utf-8"))
-    described = " ".join(ast.get_docstring(script).split("\n\n")[1].replace("`", "").split())
+    text = " ".join(ast.get_docstring(script).split("\n\n")[1].replace("`", "").split())
+    described = re.split(r"(?<=[.?]) ", text)[0]
     shown = variables.setdefault("shown_figures", [])
     paths = []
     for value in list(variables["example_globals"].values()):
@@ -145,6 +147,17 @@ def link_tables(_app, _name, source):
     source[0] = re.sub(r"\]\((?:\.\./)+plots/([\w-]+)\.md\)", r"](/tables/\1.md)", source[0])
 
 
+def link_figures(app, doctree, docname):
+    """Makes each figure a link to its file, which a phone shows larger."""
+    root = "../" * docname.count("/")
+    for figure in doctree.findall(nodes.figure):
+        image = figure[0]
+        if isinstance(image, nodes.image) and image["uri"] in app.env.images:
+            name = app.env.images[image["uri"]][1]
+            figure.replace(image, nodes.reference("", "", image, refuri=f"{root}_images/{name}"))
+
+
 def setup(app):
     app.connect("source-read", link_tables)
+    app.connect("doctree-resolved", link_figures)
     app.connect("autodoc-skip-member", skip_fields)
