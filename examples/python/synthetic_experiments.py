@@ -120,7 +120,7 @@ def errors_and_hits(steps, fits_frame, generator):
 
 kinds = KINDS if options.all else KINDS[:2]
 errors_of = {}
-print(f"{'':30}{'noise of x unknown':>30}{'noise of x given':>30}")
+print(f"{'':28}{'noise of x unknown':>26}{'noise of x given':>26}")
 for name, steps, fits_frame in kinds:
     generator = np.random.default_rng(options.seed)
     errors, hits = errors_and_hits(steps, fits_frame, generator)
@@ -130,7 +130,7 @@ for name, steps, fits_frame in kinds:
         f" {hits[:, k].sum()} of {len(hits)}"
         for k in range(2)
     ]
-    print(f"{name:30}{cells[0]:>30}{cells[1]:>30}", flush=True)
+    print(f"{name:28}{cells[0]:>26}{cells[1]:>26}", flush=True)
 
 # %%
 # Each point is the error of one fit. Unknown noise of the displacement shifts the modulus:
