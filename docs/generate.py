@@ -163,7 +163,7 @@ def write(name, text, folder=GENERATED):
 def number(value, units=()):
     """A number as text; an angle in degrees."""
     if "deg" in units:
-        return f"{math.degrees(value):g}°"
+        return f"{math.degrees(value):g} deg"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
