@@ -37,14 +37,8 @@ ControlledBranch::ControlledBranch(const Law& law, Control control)
       end_of_start_(std::min(std::max(law.jamming, range_.begin) * (1.0 + k_start), range_.end)) {
   if (control == Control::packing_fraction) return;
   const double middle = std::midpoint(range_.begin, range_.end);
-  if (is_limited()) {
-    const double at_end = growth_by_law(packing_fraction_at(last_value()));
-    // Otherwise the branch ends at a pole, next to which an integrator's tolerated error gives the growth any value.
-    const bool is_fold = at_end < growth_by_law(middle);
-    if (is_fold) growth_at_fold_ = at_end;
-  }
   const double share = range_.begin > law_.jamming ? k_start_of_fold : k_start;
-  const double end = std::clamp(std::lerp(range_.least, value_at(middle), share), range_.least, range_.greatest);
+  const double end = std::lerp(range_.least, value_at(middle), share);
   end_of_start_ = std::max(end_of_start_, packing_fraction_at(end));
 }
 
@@ -71,16 +65,6 @@ double ControlledBranch::packing_fraction_at(double value) const {
 double ControlledBranch::growth(const Slopes& slopes) const noexcept {
   if (control_ == Control::packing_fraction) return 1.0;
   return control_ == Control::strain ? slopes.strain : slopes.stress;
-}
-
-double ControlledBranch::growth_by_law(double packing_fraction) const {
-  return growth(slopes(law_, packing_fraction, state(law_, packing_fraction).strain));
-}
-
-bool ControlledBranch::has_passed_end(double packing_fraction, double growth) const {
-  constexpr double k_doubt = 0.5;
-  return growth < k_doubt * growth_at_fold_ &&
-         (packing_fraction >= range_.end || growth < k_doubt * growth_by_law(packing_fraction));
 }
 
 Limit ControlledBranch::limit() const noexcept {

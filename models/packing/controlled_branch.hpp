@@ -32,9 +32,6 @@ class ControlledBranch {
 
   /// Derivative of the controlled quantity with respect to the packing fraction.
   [[nodiscard]] double growth(const Slopes& slopes) const noexcept;
-  /// True if the controlled quantity grows less with an integrated state than the law admits anywhere on the branch.
-  /// Errors have then led past the branch's end, where unbounded rates would lead further on.
-  [[nodiscard]] bool has_passed_end(double packing_fraction, double growth) const;
 
   [[nodiscard]] Limit limit() const noexcept;
   [[nodiscard]] DomainEnd domain_end() const;
@@ -47,14 +44,11 @@ class ControlledBranch {
   void end_at_jamming() noexcept;
 
  private:
-  [[nodiscard]] double growth_by_law(double packing_fraction) const;
-
   Law law_;
   Control control_;
   Branch range_;
   double strain_at_jamming_;
   double end_of_start_ = 0.0;
-  double growth_at_fold_ = 0.0;  ///< growth at the end of a branch that ends at a fold; else 0
 };
 
 }  // namespace monograin::packing

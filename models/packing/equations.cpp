@@ -37,8 +37,7 @@ std::array<double, 2> IntegratedEquations::excess_slopes(const IntegratedState& 
 }
 
 IntegratedState IntegratedEquations::within_branch(const IntegratedState& y) const noexcept {
-  const double least =
-      std::max(branch_.least_integrated(), std::midpoint(branch_.range().begin, branch_.end_of_start()));
+  const double least = std::midpoint(branch_.range().begin, branch_.end_of_start());
   return {y.particle_strain, std::max(y.packing_fraction, least)};
 }
 
@@ -46,7 +45,7 @@ IntegratedState IntegratedEquations::rates(const IntegratedState& y, double rate
   const double phi = y.packing_fraction;
   const Slopes s = slopes(law_, phi, strain(y), piece_);
   const double growth = branch_.growth(s);
-  if (!(growth > 0.0) || branch_.has_passed_end(phi, growth)) throw DomainError(branch_.limit());
+  if (!(growth > 0.0)) throw DomainError(branch_.limit());
   const double fraction_rate = rate / growth;
   return {s.particle_strain * fraction_rate, fraction_rate};
 }
@@ -63,17 +62,12 @@ IntegratedState IntegratedEquations::completed(const IntegratedState& guess) con
     return {guess.particle_strain, std::max(std::min(with_particles, end), least)};
   }
   // Takes the shortest path in both unknowns. With the consistent coupling, the stress at a given strain of the
-  // particles has a maximum before the packing's own. If the modulus begins within a tolerated error of Phi, that path
-  // does not arrive; Phi then follows from the strain of the particles.
-  if (const auto found = nearest(guess)) return *found;
-  const double stress = std::min(value_, branch_.range().greatest);
-  const auto found = packing_fraction_under(law_, stress, guess.particle_strain, least, end, piece_);
-  if (!found) throw std::domain_error("no packing fraction bears the stress");
-  return {guess.particle_strain, *found};
+  // particles has a maximum before the packing's own.
+  return nearest(guess);
 }
 
-/// Newton's method along the gradient of excess(). None if it does not converge.
-std::optional<IntegratedState> IntegratedEquations::nearest(IntegratedState y) const {
+/// Newton's method along the gradient of excess(). @throws std::domain_error if it does not converge
+IntegratedState IntegratedEquations::nearest(IntegratedState y) const {
   double last = 1.0;
   for (int k = 0; k < k_iterations; ++k) {
     // Next to jamming, and to a full packing of nearly incompressible particles, a tolerated state may lie outside.
@@ -92,7 +86,7 @@ std::optional<IntegratedState> IntegratedEquations::nearest(IntegratedState y) c
     last = step;
     if (step <= k_last_step || is_round_off) return y;
   }
-  return std::nullopt;
+  throw std::domain_error("no packing fraction bears the stress");
 }
 
 }  // namespace monograin::packing

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "packing/controlled_branch.hpp"
 
@@ -44,7 +43,7 @@ class IntegratedEquations {
   [[nodiscard]] IntegratedState completed(const IntegratedState& guess) const;
 
  private:
-  [[nodiscard]] std::optional<IntegratedState> nearest(IntegratedState y) const;
+  [[nodiscard]] IntegratedState nearest(IntegratedState y) const;
 
   const ControlledBranch& branch_;
   const Law& law_;

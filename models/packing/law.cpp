@@ -327,16 +327,4 @@ double packing_fraction_at(const Law& law, const Branch& branch, double value) {
                      branch.least - value, branch.greatest - value);
 }
 
-std::optional<double> packing_fraction_under(const Law& law, double stress, double particle_strain, double lower,
-                                             double upper, Piece piece) {
-  const auto excess = [&](double phi) {
-    const double strain = total_strain(law, phi) - law.sign * particle_strain;
-    return total_stress(law, phi, strain * effective_modulus(law, phi), piece) - stress;
-  };
-  const double at_lower = excess(lower);
-  const double at_upper = excess(upper);
-  if (!(at_lower < 0.0 && at_upper > 0.0)) return std::nullopt;
-  return sign_change(excess, lower, upper, at_lower, at_upper);
-}
-
 }  // namespace monograin::packing

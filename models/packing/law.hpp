@@ -153,9 +153,4 @@ struct Branch {
 /// @throws std::domain_error where the value is not on the branch
 [[nodiscard]] double packing_fraction_at(const Law& law, const Branch& branch, double value);
 
-/// Phi between two bounds at which a packing whose particles have the strain v bears a stress, to round-off.
-/// @return none if the packing bears more at the lower bound already, or less at the upper bound
-[[nodiscard]] std::optional<double> packing_fraction_under(const Law& law, double stress, double particle_strain,
-                                                           double lower, double upper, Piece piece = Piece::either);
-
 }  // namespace monograin::packing

@@ -34,8 +34,7 @@ PackingState closed_form(const ControlledBranch& branch, Mode mode, double value
     const State s = state(law, range.begin);
     return {range.begin, s.stress_elastic, s.strain, value};
   }
-  const double last = mode == Mode::starting ? branch.value_at(branch.end_of_start()) : range.greatest;
-  const double inside = std::clamp(value, range.least, last);
+  const double inside = std::clamp(value, range.least, range.greatest);
   const double phi = branch.packing_fraction_at(inside);
   const State s = state(law, phi);
   // Next to jamming, strain and stress may pass through a whole program within the round-off of Phi.

@@ -11,9 +11,6 @@
 namespace monograin::packing {
 namespace {
 
-// Share of the branch's end by which a packing has passed it.
-constexpr double k_margin = 1e-6;
-
 // Indices of the unknowns.
 constexpr std::size_t k_particles = 0;
 constexpr std::size_t k_fraction = 1;
@@ -59,15 +56,9 @@ void System::start(std::span<double> y) {
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
   ramp_ = ramps[0];
   if (ramp_.control != branch_.control()) branch_ = ControlledBranch(branch_.law(), ramp_.control);
-  if (branch_.law().given.plasticity && ramp_.direction() < 0) {
-    if (ramp_.start - ramp_.end > k_same_value * ramp_.start) {
-      throw DomainError(Limit::no_unloading_law);
-    }
-    ramp_.end = ramp_.start;
-  }
-  require_pores(y);
+  if (branch_.law().given.plasticity && ramp_.direction() < 0) throw DomainError(Limit::no_unloading_law);
   // After a change of control, the packing may stand where the new controlled quantity falls during compaction.
-  if (is_jammed() && y[k_fraction] > branch_.range().end * (1.0 + k_margin)) throw DomainError(branch_.limit());
+  if (is_jammed() && y[k_fraction] > branch_.range().end * (1.0 + k_same_value)) throw DomainError(branch_.limit());
   if (!is_jammed()) at_rest_ = y[k_fraction];
   const Mode before = mode_;
   resolve_mode(log);
@@ -75,14 +66,11 @@ void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::v
   // branch, and where the controlled quantity falls at first.
   const bool goes_on = mode_ == before && !(mode_ == Mode::jammed && y[k_fraction] < branch_.range().begin);
   if (!goes_on) {
-    if (is_jammed()) branch_.require_state(ramp_.value(0.0));
     solve(0.0, y);
     if (is_jammed()) yielding_.pass(branch_, ramp_.value(0.0), log);
   }
-  take_piece(0.0);
-  require_pores(y);  // the packing may have moved on until it is full
+  require_pores(y);
   if (is_at_limit(0.0)) throw CannotBegin(branch_.domain_end());
-  if (goes_on) complete(0.0, y);
   guards_.arm(branch_, ramp_, mode_, yielding_, ramp_.value(0.0));
   resting_ = y[k_fraction];
 }
@@ -114,7 +102,7 @@ void System::resolve_mode(std::vector<Event>& log) {
 PackingState System::by_law(double xi) const { return closed_form(branch_, mode_, ramp_.value(xi), at_rest_); }
 
 IntegratedEquations System::equations(double xi) const {
-  return {branch_, piece_, unknowns_[k_particles].scale, ramp_.value(xi)};
+  return {branch_, piece(), unknowns_[k_particles].scale, ramp_.value(xi)};
 }
 
 PackingState System::seen(double xi, std::span<const double> y) const {
@@ -123,18 +111,12 @@ PackingState System::seen(double xi, std::span<const double> y) const {
   const double phi = yielding_.is_full ? y[k_fraction] : std::min(y[k_fraction], yielding_.full_plasticity);
   const double strain = equations(xi).strain({y[k_particles], phi});
   const double stress_elastic = strain * effective_modulus(branch_.law(), phi);
-  return {phi, stress_elastic, strain, total_stress(branch_.law(), phi, stress_elastic, piece_)};
+  return {phi, stress_elastic, strain, total_stress(branch_.law(), phi, stress_elastic, piece())};
 }
 
 void System::complete(double xi, std::span<double> y) {
   if (mode_ != Mode::jammed) return solve(xi, y);
   store(equations(xi).completed(state_of(y)), y);
-}
-
-/// Sets the piece of eq. 11 by the law: the errors of an integrated state may lead past where the pieces meet.
-void System::take_piece(double xi) {
-  const bool is_full = yielding_.is_full || (is_jammed() && by_law(xi).packing_fraction > yielding_.full_plasticity);
-  piece_ = is_full ? Piece::full : Piece::growing;
 }
 
 /// Sets the unknowns by the closed form.
@@ -146,7 +128,6 @@ void System::solve(double xi, std::span<double> y) {
 void System::rates(double xi, std::span<const double> y, std::span<double> dy) {
   dy[k_particles] = dy[k_fraction] = 0.0;
   if (mode_ != Mode::jammed || ramp_.direction() == 0) return;
-  branch_.require_state(ramp_.value(xi));
   const IntegratedEquations now = equations(xi);
   store(now.rates(now.within_branch(state_of(y)), ramp_.rate()), dy);
 }
@@ -223,7 +204,6 @@ std::optional<DomainEnd> System::fire(std::span<const std::size_t> fired, double
     end = branch_.domain_end();
     log.push_back(end->event);
   }
-  take_piece(xi);
   if (!end) guards_.arm(branch_, ramp_, mode_, yielding_, value);
   resting_ = y[k_fraction];
   return end;

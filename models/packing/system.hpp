@@ -66,7 +66,8 @@ class System final : public HybridSystem {
   void require_pores(std::span<const double> y) const;
   void resolve_mode(std::vector<Event>& log);
   void set_mode(Mode mode, double xi, std::span<double> y);
-  void take_piece(double xi);
+  /// Piece of eq. 11 that an integrated state follows.
+  [[nodiscard]] Piece piece() const noexcept { return yielding_.is_full ? Piece::full : Piece::growing; }
 
   double initial_ = 0.0;
   std::array<Unknown, 2> unknowns_;
@@ -78,7 +79,6 @@ class System final : public HybridSystem {
   double resting_ = 0.0;  ///< value of the unknown Phi in modes that do not integrate it
   double at_rest_ = 0.0;  ///< Phi of an unjammed packing under no stress
   Yielding yielding_;
-  Piece piece_ = Piece::growing;  ///< piece of eq. 11 that an integrated state follows
   Guards guards_;
 };
 
