@@ -21,7 +21,6 @@ constexpr double k_last_correction = 1e-11;
 constexpr double k_strain_round_off = 1e-16;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
-constexpr int k_most_corrections_of_round_off = 2;
 constexpr int k_most_corrections = 60;
 constexpr int k_most_halvings = 20;
 // Plastic strain within which every guess of an integrator lies, at any tolerance. A state that is farther from its
@@ -77,12 +76,7 @@ enum class ReturnPath { flow, shortest };
 class ReturnMapping {
  public:
   ReturnMapping(const Phase& phase, double xi, const PlasticStrains& guess, ReturnPath path)
-      : phase_(phase),
-        xi_(xi),
-        is_along_flow_(path == ReturnPath::flow),
-        has_caps_(is_compressible(phase.parameters.model)),
-        guess_(guess),
-        strains_(guess) {}
+      : phase_(phase), xi_(xi), is_along_flow_(path == ReturnPath::flow), guess_(guess), strains_(guess) {}
 
   /// Plastic strains with f = 0, not too far from the guess; none if the method does not reach them.
   [[nodiscard]] std::optional<PlasticStrains> result() {
@@ -123,7 +117,7 @@ class ReturnMapping {
       here_ = response(phase_, xi_, strains_);
       now_ = flow_to_surface(phase_, here_);
     } catch (const std::domain_error&) {
-      if (correction_.phi == 0.0 || ++halvings_ > k_most_halvings) throw;
+      if (++halvings_ > k_most_halvings) throw;
       for (double* part : {&correction_.phi, &correction_.deviatoric, &last_.yield.f}) *part *= 0.5;
       move(correction_, -1.0);
       return false;
@@ -139,7 +133,7 @@ class ReturnMapping {
   }
 
   [[nodiscard]] bool has_passed_floor() const {
-    return has_caps_ && last_.yield.f > 0.0 && now_.yield.f > 0.0 && slope_along(correction_) > 0.0;
+    return last_.yield.f > 0.0 && now_.yield.f > 0.0 && slope_along(correction_) > 0.0;
   }
 
   /// Takes the last correction back to the least f along it, and turns to the direction of the floor.
@@ -171,9 +165,8 @@ class ReturnMapping {
   [[nodiscard]] bool has_converged() {
     const double last_correction = std::min(k_last_correction, std::sqrt(k_strain_round_off * elastic_strain_));
     const bool is_small = !(correction_.length() >= last_correction);
-    if (!is_small && (!is_round_off() || ++corrections_of_round_off_ < k_most_corrections_of_round_off)) return false;
-    const bool is_on_surface = !has_caps_ || std::abs(now_.yield.f) < k_last_excess;
-    return is_on_surface || ++small_corrections_ >= k_most_small_corrections;
+    if (!is_small && !is_round_off()) return false;
+    return std::abs(now_.yield.f) < k_last_excess || ++small_corrections_ >= k_most_small_corrections;
   }
 
   /// True if f is round-off. Under prescribed stresses f may vary so little with phi that its round-off is a large
@@ -193,7 +186,6 @@ class ReturnMapping {
   const Phase& phase_;
   double xi_;
   bool is_along_flow_;
-  bool has_caps_;
   PlasticStrains guess_;
   PlasticStrains strains_;
   double elastic_strain_ = 0.0;
@@ -205,7 +197,6 @@ class ReturnMapping {
   PlasticFlow last_;                     ///< flow where the last correction began; f is the part that it takes away
   std::optional<PlasticStrains> floor_;  ///< direction along the floor of a valley
   int small_corrections_ = 0;
-  int corrections_of_round_off_ = 0;
   int halvings_ = 0;
 };
 
