@@ -1,16 +1,13 @@
 #include "scenario/cells.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <string>
 #include <system_error>
 
 namespace monograin {
 namespace {
-
-constexpr std::string_view k_minus_sign = "\xE2\x88\x92";  // U+2212
-constexpr std::size_t k_longest_number = 64;
 
 std::string_view without_end_blanks(std::string_view text) {
   const std::size_t last = text.find_last_not_of(" \t\r");
@@ -98,19 +95,20 @@ std::vector<Cell> cells_of(std::string_view line, char separator) {
   return cells;
 }
 
-std::optional<double> number_in(std::string_view text, char decimal) noexcept {
+std::optional<double> number_in(std::string_view text, char decimal) {
   if (text.starts_with('+')) text.remove_prefix(1);
   const bool is_negative = text.starts_with('-') || text.starts_with(k_minus_sign);
   if (is_negative) text.remove_prefix(text.starts_with('-') ? 1 : k_minus_sign.size());
   if (text.starts_with('-')) return std::nullopt;
-  std::array<char, k_longest_number> digits{};
+  std::string digits;
   const char mark = decimal == '.' ? ',' : '.';
   if (decimal != '.' || text.find(mark) != std::string_view::npos) {
     const bool is_grouped = has_thousands(text, decimal);
-    if (text.size() >= digits.size() || (!is_grouped && text.find(mark) != std::string_view::npos)) return std::nullopt;
-    const auto end = std::ranges::remove_copy(text, digits.begin(), mark).out;
-    std::replace(digits.begin(), end, decimal, '.');
-    text = {digits.data(), static_cast<std::size_t>(end - digits.begin())};
+    if (!is_grouped && text.find(mark) != std::string_view::npos) return std::nullopt;
+    digits = text;
+    std::erase(digits, mark);
+    std::ranges::replace(digits, decimal, '.');
+    text = digits;
   }
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -7,6 +7,9 @@
 
 namespace monograin {
 
+/// The minus sign of printed texts, U+2212.
+inline constexpr std::string_view k_minus_sign = "\xE2\x88\x92";
+
 struct Cell {
   std::string_view text;   ///< without the blanks and quotes around it
   std::size_t column = 1;  ///< of its first character in the line, counted in characters of UTF-8
@@ -26,7 +29,7 @@ struct Cell {
 /// Parses a text that is a finite number as a whole, whatever the locale; none otherwise.
 /// @param decimal  '.' or ','. The other one may mark thousands: "1.100,5", "1.250.000"; "1.100" may mean 1.1 and is
 ///                 refused.
-[[nodiscard]] std::optional<double> number_in(std::string_view text, char decimal = '.') noexcept;
+[[nodiscard]] std::optional<double> number_in(std::string_view text, char decimal = '.');
 
 /// The text without a byte order mark at its beginning.
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text) noexcept;

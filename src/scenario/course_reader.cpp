@@ -178,7 +178,7 @@ class TableReader {
     const Range times = plausible_range(Dimension::time, k_not_negative);
     const Range values = finite_range(value_);
     std::vector<Point> points;
-    for (std::size_t row = 0; row < data_.lines.size() && found_ < k_most_table_faults; ++row) {
+    for (std::size_t row = 0; row < data_.lines.size() && found_ < k_most_shown_faults; ++row) {
       const Point point{data_.columns[0].values[row] * to_seconds, data_.columns[1].values[row] * to_si};
       check_range(row, 0, point.time, Dimension::time, times);
       check_range(row, 1, point.value, value_.dimension, values);

@@ -24,11 +24,11 @@ class CurveParser {
 
   SampledCurve parse(std::string_view text) {
     std::string_view rest = without_byte_order_mark(text);
-    while (!rest.empty() && found_ < k_most_table_faults) {
+    while (!rest.empty() && found_ < k_most_shown_faults) {
       ++line_;
       add_line(take_line(rest));
     }
-    if (found_ < k_most_table_faults) {
+    if (found_ < k_most_shown_faults) {
       check_length();
     } else if (!rest.empty()) {
       ++line_;
@@ -141,7 +141,7 @@ SampledCurve parse_columns(std::string_view text, const std::string& origin, std
   SampledCurve table{.text = std::move(data.text)};
   if (faults.size() > before) return table;
   std::map<std::pair<double, double>, std::size_t> lines;  // lines of earlier rows, by their first two columns
-  for (std::size_t row = 0; row < data.lines.size() && faults.size() < before + k_most_table_faults; ++row) {
+  for (std::size_t row = 0; row < data.lines.size() && faults.size() < before + k_most_shown_faults; ++row) {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const double value = data.columns[k].values[row];
       const KeySpec spec = quantity_key(columns[k]);

@@ -11,8 +11,6 @@
 namespace monograin {
 namespace {
 
-constexpr std::size_t k_most_key_parts = 32;
-
 /// Finds keys with too many parts. The parser makes one table for each part, and the destruction of deeply nested
 /// tables would overflow the stack; the parser limits the nesting of values only.
 class KeyScanner {

@@ -13,6 +13,9 @@
 
 namespace monograin {
 
+/// Largest number of parts of a dotted key.
+inline constexpr std::size_t k_most_key_parts = 32;
+
 /// Parses a text; its nodes give `origin` as their file.
 /// @throws ScenarioError with one fault if the text is not TOML, is too large or nests too deeply
 [[nodiscard]] toml::table parse_document(std::string_view text, const std::string& origin);

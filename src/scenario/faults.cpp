@@ -11,8 +11,6 @@
 namespace monograin {
 namespace {
 
-constexpr std::size_t k_most_shown = 20;  // faults in a message; the rest is counted
-
 std::string one_line(const Fault& fault) {
   return fmt::format("{}:{}:{}: {}", fault.where.file, fault.where.line, fault.where.column, fault.message);
 }
@@ -20,7 +18,7 @@ std::string one_line(const Fault& fault) {
 std::string one_line_each(const std::vector<Fault>& faults) {
   std::string text;
   // A line "and 1 more" could as well show that fault.
-  const std::size_t shown = faults.size() <= k_most_shown + 1 ? faults.size() : k_most_shown;
+  const std::size_t shown = faults.size() <= k_most_shown_faults + 1 ? faults.size() : k_most_shown_faults;
   for (std::size_t k = 0; k < shown; ++k) text += (k == 0 ? "" : "\n") + one_line(faults[k]);
   const std::size_t left = faults.size() - shown;
   if (left > 0) text += fmt::format("\nand {} more faults", left);

@@ -10,8 +10,8 @@
 
 namespace monograin {
 
-/// Largest number of faults that are reported for one table.
-inline constexpr std::size_t k_most_table_faults = 20;
+/// Largest number of faults that are reported for one table, and shown in one message; the rest is counted.
+inline constexpr std::size_t k_most_shown_faults = 20;
 
 class FaultList {
  public:

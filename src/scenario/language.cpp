@@ -23,20 +23,15 @@ constexpr Range k_right_angle{
     .lower = 0.0, .upper = std::numbers::pi / 2.0, .lower_is_open = true, .upper_is_open = true};
 constexpr double k_default_oblique_angle = 37.5 * std::numbers::pi / 180.0;
 
-constexpr std::array<string_view, 7> k_configurations{"simple", "die",      "hydrostatic", "oblique-die",
-                                                      "walls",  "triaxial", "strain-path"};
 constexpr std::array<string_view, 2> k_centres{"fixed", "equilibrium"};
 constexpr std::array<string_view, 2> k_ludwik_fits{"both", "exponent"};
 
 // Replaces a model that is missing or misspelt, so that the loading is checked as far as no model is needed.
 constexpr Model k_any_model{.configurations = k_configurations, .has_free_centre = true};
 
-// Keys of steps and conditions of all models.
+// Keys of steps of all models.
 constexpr std::array<string_view, 8> k_step_keys{
     "displacement", "force", "detach", "strain", "stress", "lateral_strain", "lateral_stress", "packing_fraction"};
-constexpr std::array<string_view, 9> k_until_keys{"wall",         "force",          "displacement",
-                                                  "pressure",     "contact_radius", "apparent_radius",
-                                                  "stress_axial", "stress_lateral", "relative_density"};
 constexpr std::array<string_view, 6> k_loading_keys{"configuration", "centre", "angle",
                                                     "oblique_walls", "wall",   "steps"};
 
@@ -501,7 +496,8 @@ void add_loading(Language& language, const Model& model) {
         foreign_keys(names_of(own_step_keys), form.keys, fmt::format("does not go with '{}' in one step", form.key));
     std::ranges::copy(language.foreign_step_keys, std::back_inserter(form.foreign));
   }
-  language.foreign_until_keys = foreign_keys(k_until_keys, language.until, unused);
+  language.foreign_until_keys = foreign_keys(k_quantity_keys, language.until, unused);
+  if (!model.has_walls()) language.foreign_until_keys.push_back({"wall", unused});
   language.foreign_loading = foreign_keys(k_loading_keys, language.loading, unused);
 }
 

@@ -3,6 +3,7 @@
 /// The reader checks files against these tables, and the JSON Schema is made from them, so that both agree.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -106,6 +107,14 @@ struct StepForm {
   std::vector<ForeignKey> foreign{};    ///< keys of other forms and of other models
   std::optional<CourseForm> course{};   ///< none: the target is a value
 };
+
+/// Words of Loading::Configuration, in its order.
+inline constexpr std::array<std::string_view, 7> k_configurations{"simple", "die",      "hydrostatic", "oblique-die",
+                                                                  "walls",  "triaxial", "strain-path"};
+/// Keys of conditions that compare a quantity, in the order of Quantity.
+inline constexpr std::array<std::string_view, 8> k_quantity_keys{"force",          "displacement",    "pressure",
+                                                                 "contact_radius", "apparent_radius", "stress_axial",
+                                                                 "stress_lateral", "relative_density"};
 
 inline constexpr int k_most_points = 1'000'000;
 inline constexpr double k_most_rows = 2e7;        ///< of a history, events not counted

@@ -18,30 +18,12 @@ namespace {
 
 using Configuration = Loading::Configuration;
 
-Configuration to_configuration(const std::string& word) {
-  if (word == "die") return Configuration::die;
-  if (word == "hydrostatic") return Configuration::hydrostatic;
-  if (word == "oblique-die") return Configuration::oblique_die;
-  if (word == "walls") return Configuration::walls;
-  if (word == "triaxial") return Configuration::triaxial;
-  if (word == "strain-path") return Configuration::strain_path;
-  return Configuration::simple;
-}
-
 /// Contact classes of a preset configuration.
 std::vector<std::string_view> classes_of(std::string_view configuration) {
   if (configuration == "die") return {"axial", "lateral"};
   if (configuration == "oblique-die") return {"axial", "lateral-x", "lateral-y", "oblique"};
   if (configuration == "simple" || configuration == "hydrostatic") return {"axial"};
   return {};
-}
-
-/// Sine of the angle between two directions; 2 for an angle of 90 degrees or more.
-double sine_between(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  const double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  if (dot <= 0.0) return 2.0;
-  const double cross = std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
-  return cross / (std::hypot(a[0], a[1], a[2]) * std::hypot(b[0], b[1], b[2]));
 }
 
 /// Reads one `[loading]` table.
@@ -56,7 +38,9 @@ class LoadingReader {
   Loading read() {
     const std::string configuration = section_.text("configuration");
     check_keys_of_configurations(configuration);
-    loading_.configuration = to_configuration(configuration);
+    if (const auto word = std::ranges::find(k_configurations, configuration); word != k_configurations.end()) {
+      loading_.configuration = static_cast<Configuration>(word - k_configurations.begin());
+    }
     loading_.centre_is_free = section_.text("centre") == "equilibrium";
     loading_.oblique_angle = section_.number("angle").value_or(0.0);
     loading_.oblique_walls = static_cast<int>(section_.number("oblique_walls").value_or(0.0));
@@ -149,7 +133,7 @@ class LoadingReader {
       for (std::size_t j = 0; j < i; ++j) {
         const WallSpec& wall = loading_.walls[i];
         const WallSpec& earlier = loading_.walls[j];
-        if (sine_between(wall.normal, earlier.normal) < k_same_direction) {
+        if (angle_between(wall.normal, earlier.normal) < k_same_direction) {
           reading_.faults.add(
               wall.where, fmt::format("walls '{}' and '{}' have the same normal; expected different ones", earlier.name,
                                       wall.name));

@@ -30,9 +30,8 @@ bool is_missing(std::string_view text) {
 
 /// True for a text that begins with a digit, or with one after a sign, a decimal sign or both.
 bool begins_as_a_number(std::string_view text) {
-  constexpr std::string_view k_true_minus = "\xE2\x88\x92";  // U+2212
-  if (text.starts_with(k_true_minus))
-    text.remove_prefix(k_true_minus.size());
+  if (text.starts_with(k_minus_sign))
+    text.remove_prefix(k_minus_sign.size());
   else if (text.starts_with('+') || text.starts_with('-'))
     text.remove_prefix(1);
   if (text.starts_with('.') || text.starts_with(',')) text.remove_prefix(1);
@@ -167,7 +166,7 @@ class DataParser {
   void take_rows(std::string_view rest) {
     line_ = 0;
     std::vector<TextLine> texts;  // since the last row with a number
-    while (!rest.empty() && found_ < k_most_table_faults) {
+    while (!rest.empty() && found_ < k_most_shown_faults) {
       ++line_;
       const std::string_view line = take_line(rest);
       if (line_ < data_.layout.first_line) continue;
@@ -184,7 +183,7 @@ class DataParser {
     const bool has_rows = !data_.lines.empty() || !data_.left_out.empty();
     if (!has_rows || !format_.may_have_trailer) take_texts(texts);
     for (const TextLine& line : texts) data_.trailer.push_back(line.number);
-    if (found_ >= k_most_table_faults && !rest.empty()) {
+    if (found_ >= k_most_shown_faults && !rest.empty()) {
       ++line_;
       fault(1, "too many faults above; the rest of the table is not checked");
     }
@@ -206,7 +205,7 @@ class DataParser {
   void take_texts(std::vector<TextLine>& texts) {
     const std::size_t last = line_;
     for (const TextLine& line : texts) {
-      if (found_ >= k_most_table_faults) break;
+      if (found_ >= k_most_shown_faults) break;
       line_ = line.number;
       take_row(line.cells);
     }
@@ -235,7 +234,7 @@ class DataParser {
         values.back() = *value;
       } else if (is_missing(cell.text)) {
         is_left_out = true;
-        if (missing_.size() < k_most_table_faults) missing_.push_back({line_, cell.column, no_number(column, cell)});
+        if (missing_.size() < k_most_shown_faults) missing_.push_back({line_, cell.column, no_number(column, cell)});
       } else {
         fault(cell.column, no_number(column, cell) + advice_for(cell.text, data_.layout.decimal));
       }
@@ -265,7 +264,7 @@ class DataParser {
     const std::size_t last = line_;
     for (const MissingCell& cell : missing_) {
       line_ = cell.line;
-      if (found_ < k_most_table_faults) fault(cell.column, cell.message + why);
+      if (found_ < k_most_shown_faults) fault(cell.column, cell.message + why);
     }
     line_ = last;
   }

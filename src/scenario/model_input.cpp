@@ -6,29 +6,10 @@
 #include <iterator>
 
 #include "catalogue.hpp"
+#include "scenario/language.hpp"
 
 namespace monograin {
 namespace {
-
-std::string_view configuration_word(Loading::Configuration configuration) {
-  switch (configuration) {
-    case Loading::Configuration::simple:
-      return "simple";
-    case Loading::Configuration::die:
-      return "die";
-    case Loading::Configuration::hydrostatic:
-      return "hydrostatic";
-    case Loading::Configuration::oblique_die:
-      return "oblique-die";
-    case Loading::Configuration::walls:
-      return "walls";
-    case Loading::Configuration::triaxial:
-      return "triaxial";
-    case Loading::Configuration::strain_path:
-      return "strain-path";
-  }
-  return {};
-}
 
 PlannedStep planned(const Step& step) {
   PlannedStep result{.may_end_early = !step.until.empty()};
@@ -62,7 +43,9 @@ ModelInput model_input(const CheckedScenario& scenario) {
                    .curves = scenario.curves,
                    .centre_is_free = scenario.loading.centre_is_free,
                    .integrator = scenario.numerics.integrator};
-  if (!model.configurations.empty()) input.configuration = configuration_word(scenario.loading.configuration);
+  if (!model.configurations.empty()) {
+    input.configuration = k_configurations[static_cast<std::size_t>(scenario.loading.configuration)];
+  }
   if (!model.has_walls()) std::ranges::transform(scenario.loading.steps, std::back_inserter(input.program), planned);
   return input;
 }

@@ -11,7 +11,6 @@
 namespace monograin {
 namespace {
 
-constexpr std::string_view k_material = "material.";
 constexpr std::string_view k_angle = "loading.angle";
 
 void append_quantities(std::vector<NumberKey>& numbers, std::string_view table, std::span<const KeySpec> keys) {
@@ -45,8 +44,8 @@ std::string gap_path(std::size_t wall) { return fmt::format("loading.wall[{}].ga
 void set_number(CheckedScenario& scenario, std::string_view path, double value) {
   if (path == k_angle) {
     scenario.loading.oblique_angle = value;
-  } else if (path.starts_with(k_material)) {
-    scenario.material.insert_or_assign(std::string(path.substr(k_material.size())), value);
+  } else if (path.starts_with(k_of_material)) {
+    scenario.material.insert_or_assign(std::string(path.substr(k_of_material.size())), value);
   } else if (path.starts_with(scenario.model + '.')) {
     scenario.options.insert_or_assign(std::string(path.substr(scenario.model.size() + 1)), value);
   } else {

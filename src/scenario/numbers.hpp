@@ -14,6 +14,8 @@ namespace monograin {
 
 /// Path of the initial radius. set_number() cannot change it, because lengths may be given in R0; ScenarioTemplate can.
 inline constexpr std::string_view k_radius_key = "particle.radius";
+/// Beginning of the paths of the material's numbers.
+inline constexpr std::string_view k_of_material = "material.";
 
 /// A number of a scenario that can be fitted or varied.
 struct NumberKey {

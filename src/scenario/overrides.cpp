@@ -15,7 +15,6 @@ namespace monograin {
 namespace {
 
 constexpr std::string_view k_prefix = "override '";
-constexpr std::size_t k_most_path_parts = 32;
 
 std::string origin_of(const std::string& text) { return fmt::format("{}{}'", k_prefix, on_one_line(text)); }
 
@@ -38,7 +37,7 @@ class PathParser {
         if (!index || !take(']')) return std::nullopt;
         path.emplace_back(*index);
       }
-      if (path.size() > k_most_path_parts) return std::nullopt;
+      if (path.size() > k_most_key_parts) return std::nullopt;
     } while (take('.'));
     if (!text_.empty()) return std::nullopt;
     return path;

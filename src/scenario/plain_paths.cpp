@@ -16,7 +16,7 @@ std::optional<std::pair<std::size_t, std::size_t>> range_in(std::string_view tex
   if (!first || !text.starts_with('-')) return std::nullopt;
   text.remove_prefix(1);
   const auto last = take_index(text);
-  if (!last || !text.empty() || *last <= *first || *last - *first >= k_most_paths) return std::nullopt;
+  if (!last || !text.empty() || *last <= *first) return std::nullopt;
   return std::pair(*first, *last);
 }
 
@@ -37,7 +37,7 @@ std::vector<std::string> plain_paths(std::string_view path) {
     const std::size_t close = std::min(open == rest.npos ? rest.size() : rest.find(']', open), rest.size());
     const auto range = close < rest.size() ? range_in(rest.substr(open + 1, close - open - 1)) : std::nullopt;
     const auto [first, last] = range.value_or(std::pair<std::size_t, std::size_t>(0, 0));
-    if (paths.size() * (last - first + 1) > k_most_paths) return {std::string(path)};
+    if (last - first >= k_most_paths / paths.size()) return {std::string(path)};
     std::vector<std::string> longer;
     for (const std::string& before : paths) {
       for (std::size_t index = first; index <= last; ++index) {

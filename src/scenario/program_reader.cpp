@@ -13,35 +13,26 @@
 namespace monograin {
 namespace {
 
-constexpr int k_deepest_cycle = 16;
-
 /// Quantity of a condition's key; none for the key of an event.
 std::optional<Quantity> quantity_of(std::string_view key) {
-  if (key == "force") return Quantity::force;
-  if (key == "displacement") return Quantity::displacement;
-  if (key == "pressure") return Quantity::pressure;
-  if (key == "contact_radius") return Quantity::contact_radius;
-  if (key == "apparent_radius") return Quantity::apparent_radius;
-  if (key == "stress_axial") return Quantity::stress_axial;
-  if (key == "stress_lateral") return Quantity::stress_lateral;
-  if (key == "relative_density") return Quantity::relative_density;
-  return std::nullopt;
+  const auto found = std::ranges::find(k_quantity_keys, key);
+  if (found == k_quantity_keys.end()) return std::nullopt;
+  return static_cast<Quantity>(found - k_quantity_keys.begin());
 }
 
 }  // namespace
 
 std::vector<Step> ProgramReader::read(const Section& parent, std::string_view key, const std::string& label) {
-  std::vector<Step> steps = read_list(parent, key, label, 0);
+  std::vector<Step> steps = read_list(parent, key, label);
   if (!is_within_limit(steps_so_far_ + steps.size(), parent.key_place(key))) return {};
   steps_so_far_ += steps.size();
   return steps;
 }
 
-std::vector<Step> ProgramReader::read_list(const Section& parent, std::string_view key, const std::string& label,
-                                           int depth) {
+std::vector<Step> ProgramReader::read_list(const Section& parent, std::string_view key, const std::string& label) {
   std::vector<Step> steps;
   for (const Section::Origin& table : parent.tables(key, label)) {
-    std::vector<Step> written_out = read_step(table, depth);
+    std::vector<Step> written_out = read_step(table);
     if (!is_within_limit(steps.size() + written_out.size(), table.place)) return {};
     std::ranges::move(written_out, std::back_inserter(steps));
   }
@@ -57,14 +48,14 @@ bool ProgramReader::is_within_limit(std::size_t steps, const SourceLocation& whe
   return false;
 }
 
-std::vector<Step> ProgramReader::read_step(const Section::Origin& table, int depth) {
+std::vector<Step> ProgramReader::read_step(const Section::Origin& table) {
   const StepForm* form = form_of(*table.table);
   if (form == nullptr) {
     report_formless(table);
     return {};
   }
   const Section section(reading_, table, form->keys, form->foreign);
-  if (!form->kind) return read_cycle(section, depth);
+  if (!form->kind) return read_cycle(section);
   if (form->takes_duration_or_rate) check_duration_or_rate(section, form->course && section.has_table(form->key));
   return read_plain_step(section, *form);
 }
@@ -127,13 +118,8 @@ void ProgramReader::check_duration_or_rate(const Section& section, bool has_own_
   }
 }
 
-std::vector<Step> ProgramReader::read_cycle(const Section& section, int depth) {
-  if (depth >= k_deepest_cycle) {
-    reading_.faults.add(section.key_place("cycle"),
-                        fmt::format("cycles are nested too deeply; expected at most {} levels", k_deepest_cycle));
-    return {};
-  }
-  const std::vector<Step> once = read_list(section, "steps", "the steps of a cycle", depth + 1);
+std::vector<Step> ProgramReader::read_cycle(const Section& section) {
+  const std::vector<Step> once = read_list(section, "steps", "the steps of a cycle");
   const auto count = static_cast<std::size_t>(section.number("cycle").value_or(1.0));
   // Both factors are within the limit, so that their product cannot overflow.
   if (!is_within_limit(count * once.size(), section.key_place("cycle"))) return {};

@@ -29,10 +29,9 @@ class ProgramReader {
   [[nodiscard]] const FileTexts& files() const noexcept { return files_; }
 
  private:
-  [[nodiscard]] std::vector<Step> read_list(const Section& parent, std::string_view key, const std::string& label,
-                                            int depth);
-  [[nodiscard]] std::vector<Step> read_step(const Section::Origin& table, int depth);
-  [[nodiscard]] std::vector<Step> read_cycle(const Section& section, int depth);
+  [[nodiscard]] std::vector<Step> read_list(const Section& parent, std::string_view key, const std::string& label);
+  [[nodiscard]] std::vector<Step> read_step(const Section::Origin& table);
+  [[nodiscard]] std::vector<Step> read_cycle(const Section& section);
   [[nodiscard]] std::vector<Step> read_plain_step(const Section& section, const StepForm& form);
   void read_targets(const Section& section, const StepForm& form, Step& step);
   [[nodiscard]] std::vector<Until> read_until(const Section& step);

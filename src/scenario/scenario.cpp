@@ -11,6 +11,7 @@
 #include "scenario/faults.hpp"
 #include "scenario/key_path.hpp"
 #include "scenario/language.hpp"
+#include "scenario/numbers.hpp"
 #include "scenario/overrides.hpp"
 #include "scenario/reader.hpp"
 #include "scenario/rules.hpp"
@@ -58,8 +59,6 @@ CheckedScenario parse_source(const ScenarioSource& source, const std::vector<std
   const toml::table root = tree_of(source, overrides, faults);
   return check_tree(root, source, overrides, faults);
 }
-
-constexpr std::string_view k_of_material = "material.";
 
 /// True if a change of the material's numbers changes nothing else in the scenario.
 bool may_set_material(const toml::table& tree, const CheckedScenario& scenario) {

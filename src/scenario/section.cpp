@@ -126,16 +126,6 @@ std::optional<double> Section::column_number(std::string_view key) const {
   return number == nullptr ? std::nullopt : std::optional(*number);
 }
 
-std::vector<double> Section::numbers(std::string_view key) const {
-  const auto found = values_.find(key);
-  return found == values_.end() ? std::vector<double>{} : std::get<std::vector<double>>(found->second);
-}
-
-std::vector<std::string> Section::texts(std::string_view key) const {
-  const auto found = values_.find(key);
-  return found == values_.end() ? std::vector<std::string>{} : std::get<std::vector<std::string>>(found->second);
-}
-
 Section::Origin Section::table(std::string_view key, std::string label) const {
   const toml::node* node = origin_.table->get(key);
   const toml::table* table = node == nullptr ? nullptr : node->as_table();

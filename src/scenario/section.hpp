@@ -83,8 +83,8 @@ class Section {
   [[nodiscard]] std::string text(std::string_view key) const;
   /// Number of a column, if its key has one and no heading.
   [[nodiscard]] std::optional<double> column_number(std::string_view key) const;
-  [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
-  [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
+  [[nodiscard]] std::vector<double> numbers(std::string_view key) const { return list<double>(key); }
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key) const { return list<std::string>(key); }
 
   /// The table below a key; if it is absent or faulty, an empty table at this section's position.
   [[nodiscard]] Origin table(std::string_view key, std::string label) const;
@@ -128,6 +128,12 @@ class Section {
     const KeySpec* spec = find_key(keys_, key);
     if (spec != nullptr && std::holds_alternative<T>(spec->default_value)) return std::get<T>(spec->default_value);
     return std::nullopt;
+  }
+
+  template <class T>
+  [[nodiscard]] std::vector<T> list(std::string_view key) const {
+    const auto found = values_.find(key);
+    return found == values_.end() ? std::vector<T>{} : std::get<std::vector<T>>(found->second);
   }
 
   Reading& reading_;

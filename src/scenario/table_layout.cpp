@@ -171,7 +171,9 @@ class LayoutFinder {
     }
     layout.first_line = next < rows_.size() ? rows_[next].number : rows_.back().number + 1;
     take_units(row_units, layout);
-    take_numeric(next, layout);
+    std::vector<const SampledRow*> data;
+    for (std::size_t row = next; row < rows_.size(); ++row) data.push_back(&rows_[row]);
+    layout.is_numeric = columns_of_numbers(layout.headings.size(), data);
     return layout;
   }
 
@@ -186,18 +188,30 @@ class LayoutFinder {
     }
     if (counts.empty()) return;
     cell_count_ = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; })->first;
-    std::vector<std::size_t> numbers(cell_count_);
-    std::vector<std::size_t> filled(cell_count_);
+    std::vector<const SampledRow*> rows;
     for (const SampledRow& row : rows_) {
       if (!is_of_table(row)) continue;
       width_ = std::max(width_, filled_width(row));
-      for (std::size_t k = 0; k < cell_count_; ++k) {
-        if (!row.cells[k].text.empty()) ++filled[k];
-        if (number_in(row.cells[k].text, dialect_.decimal)) ++numbers[k];
-      }
+      rows.push_back(&row);
     }
-    for (std::size_t k = 0; k < cell_count_; ++k)
-      holds_numbers_.push_back(numbers[k] > 0 && 2 * numbers[k] >= filled[k]);
+    holds_numbers_ = columns_of_numbers(cell_count_, rows);
+  }
+
+  /// For each column: true if most of its cells in these rows are numbers.
+  [[nodiscard]] std::vector<bool> columns_of_numbers(std::size_t columns,
+                                                     const std::vector<const SampledRow*>& rows) const {
+    std::vector<bool> result;
+    for (std::size_t k = 0; k < columns; ++k) {
+      std::size_t numbers = 0;
+      std::size_t filled = 0;
+      for (const SampledRow* row : rows) {
+        if (k >= row->cells.size()) continue;
+        if (!row->cells[k].text.empty()) ++filled;
+        if (number_in(row->cells[k].text, dialect_.decimal)) ++numbers;
+      }
+      result.push_back(numbers > 0 && 2 * numbers >= filled);
+    }
+    return result;
   }
 
   [[nodiscard]] bool is_of_table(const SampledRow& row) const {
@@ -303,21 +317,6 @@ class LayoutFinder {
       for (std::size_t k = 0; k < std::min(units.size(), layout.units.size()); ++k) {
         if (!units[k].empty()) layout.units[k] = units[k];
       }
-    }
-  }
-
-  void take_numeric(std::size_t begin, TableLayout& layout) const {
-    std::vector<std::size_t> numbers(layout.headings.size());
-    std::vector<std::size_t> filled(layout.headings.size());
-    for (std::size_t row = begin; row < rows_.size(); ++row) {
-      for (std::size_t k = 0; k < std::min(numbers.size(), rows_[row].cells.size()); ++k) {
-        const std::string_view text = rows_[row].cells[k].text;
-        if (!text.empty()) ++filled[k];
-        if (number_in(text, dialect_.decimal)) ++numbers[k];
-      }
-    }
-    for (std::size_t k = 0; k < numbers.size(); ++k) {
-      layout.is_numeric.push_back(numbers[k] > 0 && 2 * numbers[k] >= filled[k]);
     }
   }
 

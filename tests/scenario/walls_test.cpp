@@ -96,17 +96,5 @@ TEST(Cycles, AreLimitedOverAllWalls) {
   EXPECT_NE(faults[0].find("120000 ramps or more"), std::string::npos) << faults[0];
 }
 
-TEST(Cycles, AreLimitedInDepth) {
-  std::string steps = k_hold;
-  for (int i = 0; i < 16; ++i) steps = "{ cycle = 1, steps = [" + steps + "] }";
-  const auto scene = [](const std::string& program) {
-    return with_loading("[loading]\nconfiguration = \"simple\"\nsteps = [" + program + "]\n");
-  };
-  EXPECT_EQ(faults_of(scene(steps)).size(), 0U);
-  const std::vector<std::string> faults = faults_of(scene("{ cycle = 1, steps = [" + steps + "] }"));
-  ASSERT_EQ(faults.size(), 1U);
-  EXPECT_NE(faults[0].find("at most 16 levels"), std::string::npos) << faults[0];
-}
-
 }  // namespace
 }  // namespace monograin::walls_test

@@ -32,7 +32,7 @@ DesignTable parse_design_table(std::string_view text, const std::string& origin,
   DesignTable table;
   const std::size_t faults_before = faults.size();
   char separator = ',';
-  for (std::size_t number = 1; !text.empty() && faults.size() < faults_before + k_most_table_faults; ++number) {
+  for (std::size_t number = 1; !text.empty() && faults.size() < faults_before + k_most_shown_faults; ++number) {
     const std::string_view line = take_line(text);
     if (is_comment(line)) continue;
     std::vector<DesignTable::Cell> cells;

@@ -181,7 +181,7 @@ std::optional<std::vector<FactorValue>> PlannedRuns::values_of_row(const std::ve
 void PlannedRuns::make_rows(const DesignTable& table, std::span<const std::string> units) {
   std::vector<std::vector<FactorValue>> rows;
   for (const auto& cells : table.rows) {
-    if (faults_.size() >= k_most_table_faults) break;
+    if (faults_.size() >= k_most_shown_faults) break;
     std::optional<std::vector<FactorValue>> values = values_of_row(cells, units);
     if (!values) continue;
     const std::vector<SweepValue> run = resolved(*values);
