@@ -8,7 +8,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "figure/column_chart.hpp"
 #include "figure/figure.hpp"
@@ -78,7 +77,7 @@ std::vector<double> values_of(const Table& table, const Table& history, const Sh
 void append_events(const Table& events, const Table& history, const BodyFigure& figure, double sign, std::size_t panel,
                    std::vector<ChartSeries>& series) {
   const auto name = events.find("event");
-  if (!name || events.row_count() == 0 || !events.columns()[*name].holds_words()) return;
+  if (!name || !events.columns()[*name].holds_words()) return;
   const std::vector<double> x = values_of(events, history, figure.x, sign);
   const std::vector<double> y = values_of(events, history, figure.panels[panel], sign);
   for (std::size_t row = 0; row < events.row_count(); ++row) {
@@ -110,9 +109,8 @@ std::optional<Chart> body_chart(const std::vector<fs::path>& runs) {
           fmt::format("{}: has no column '{}'; expected runs of one kind", file.string(), figure->x.column));
     }
     std::ranges::move(references_of(history), std::back_inserter(chart.references));
-    const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
-    std::error_code ignored;
-    const Table marks = fs::exists(folder / "events.csv", ignored) ? read_table(folder / "events.csv") : Table{};
+    const fs::path folder = folder_of(file);
+    const Table marks = read_events(folder);
     for (std::size_t panel = 0; panel < figure->panels.size(); ++panel) {
       // A single run needs no name; its figure is drawn while the folder does not have its final name yet.
       chart.panels[panel].series.push_back({.legend = runs.size() > 1 ? verbatim_text(folder.filename().string()) : "",

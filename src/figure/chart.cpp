@@ -30,27 +30,16 @@ constexpr double k_text_margin_cm = 0.5;
 constexpr double k_a4 = 1.4142;  ///< height over width
 constexpr std::string_view k_floor_legend = "at the lower end of the axis, or below";
 
-// The full stop keeps gnuplot, which compares beginnings, from taking one name for another.
-[[nodiscard]] std::string block_of(std::size_t panel, std::size_t series) {
-  return fmt::format("panel {} series {}.", panel + 1, series + 1);
-}
-[[nodiscard]] std::string block_of(std::size_t panel, std::size_t series, Phase phase) {
-  return fmt::format("panel {} series {} {}.", panel + 1, series + 1, phase_name(phase));
-}
-[[nodiscard]] std::string block_of_area(std::size_t panel, std::size_t area) {
-  return fmt::format("panel {} area {}.", panel + 1, area + 1);
+/// Name of a data block. The full stop keeps gnuplot, which compares beginnings, from taking one name for another.
+[[nodiscard]] std::string block_of(std::size_t panel, std::string_view kind, std::size_t place,
+                                   std::string_view part = "") {
+  return fmt::format("panel {} {} {}{}{}.", panel + 1, kind, place + 1, part.empty() ? "" : " ", part);
 }
 
-[[nodiscard]] std::string block_of_floor(std::size_t panel, std::size_t series) {
-  return fmt::format("panel {} series {} at the floor.", panel + 1, series + 1);
-}
-
-[[nodiscard]] std::string block_of_band(std::size_t panel, std::size_t band) {
-  return fmt::format("panel {} band {}.", panel + 1, band + 1);
-}
+constexpr std::string_view k_at_floor = "at the floor";
 
 void append_band(std::string& text, const ChartBand& band, std::size_t panel, std::size_t place) {
-  text += fmt::format("\n\n# {} {}; columns: x, lowest and highest y\n", block_of_band(panel, place),
+  text += fmt::format("\n\n# {} {}; columns: x, lowest and highest y\n", block_of(panel, "band", place),
                       plain_text(band.legend));
   const auto append_row = [&](std::size_t row) {
     const double values[] = {band.x[row], band.lower[row], band.upper[row]};
@@ -98,7 +87,7 @@ void append_point(std::string& text, const ChartSeries& series, std::size_t row)
 void append_floor(std::string& text, const ChartSeries& series, std::optional<double> floor, std::size_t panel,
                   std::size_t place) {
   if (!reaches_floor(series, floor)) return;
-  text += fmt::format("\n\n# {} {}\n", block_of_floor(panel, place), series.legend);
+  text += fmt::format("\n\n# {} {}\n", block_of(panel, "series", place, k_at_floor), series.legend);
   for (std::size_t row = 0; row < series.x.size(); ++row) {
     if (is_at_floor(series.y[row], floor)) append_point(text, series, row);
   }
@@ -106,14 +95,14 @@ void append_floor(std::string& text, const ChartSeries& series, std::optional<do
 
 void append_series(std::string& text, const ChartSeries& series, std::size_t panel, std::size_t place) {
   if (series.style != Style::phases) {
-    text += fmt::format("\n\n# {} {}\n", block_of(panel, place), plain_text(series.legend));
+    text += fmt::format("\n\n# {} {}\n", block_of(panel, "series", place), plain_text(series.legend));
     for (std::size_t row = 0; row < series.x.size(); ++row) append_point(text, series, row);
     return;
   }
   const auto phases = phases_along(series.x);
   for (const Phase phase : k_phases) {
     if (!has_phase(phases, phase)) continue;
-    text += fmt::format("\n\n# {} {}", block_of(panel, place, phase), plain_text(series.legend));
+    text += fmt::format("\n\n# {} {}", block_of(panel, "series", place, phase_name(phase)), plain_text(series.legend));
     append_phase(text, phases, phase, [&](std::size_t row) { append_point(text, series, row); });
   }
 }
@@ -375,14 +364,15 @@ class Looks {
   for (std::size_t k = 0; k < panel.areas.size(); ++k) {
     if (panel.areas[k].boxes.empty()) continue;
     plots.push_back(fmt::format("data index {} using (0.5*($1+$2)):(0.5*($3+$4)):1:2:3:4 {}",
-                                gnuplot_string(block_of_area(place, k)), Looks::area_style(panel.areas[k].colour)));
+                                gnuplot_string(block_of(place, "area", k)), Looks::area_style(panel.areas[k].colour)));
   }
   for (std::size_t k = 0; k < panel.bands.size(); ++k) {
-    plots.push_back(fmt::format("data index {} using 1:2:3 {}", gnuplot_string(block_of_band(place, k)),
+    plots.push_back(fmt::format("data index {} using 1:2:3 {}", gnuplot_string(block_of(place, "band", k)),
                                 Looks::band_style(panel.bands[k].colour)));
   }
   const auto add_points = [&](std::size_t k) {
-    plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, k)), looks.points(panel.series[k])));
+    plots.push_back(
+        fmt::format("data index {} {}", gnuplot_string(block_of(place, "series", k)), looks.points(panel.series[k])));
   };
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     if (is_crowd(panel.series[k])) add_points(k);
@@ -393,21 +383,22 @@ class Looks {
     if (is_points(series)) {
       add_points(k);
     } else if (series.style != Style::phases) {
-      plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, k)), looks.line(series)));
+      plots.push_back(
+          fmt::format("data index {} {}", gnuplot_string(block_of(place, "series", k)), looks.line(series)));
     } else {
       const auto phases = phases_along(series.x);
       for (const Phase phase : k_phases) {
         if (!has_phase(phases, phase)) continue;
-        plots.push_back(
-            fmt::format("data index {} {}", gnuplot_string(block_of(place, k, phase)), looks.line(series, phase)));
+        plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, "series", k, phase_name(phase))),
+                                    looks.line(series, phase)));
       }
     }
   }
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const ChartSeries& series = panel.series[k];
     if (!reaches_floor(series, floor_of(series, y))) continue;
-    plots.push_back(
-        fmt::format("data index {} {}", gnuplot_string(block_of_floor(place, k)), looks.floor_points(series)));
+    plots.push_back(fmt::format("data index {} {}", gnuplot_string(block_of(place, "series", k, k_at_floor)),
+                                looks.floor_points(series)));
   }
   return plots.empty() ? std::string("plot NaN\n") : fmt::format("plot {}\n", fmt::join(plots, ", \\\n  "));
 }
@@ -463,7 +454,7 @@ std::string chart_data(const Chart& chart, const std::string& source) {
   for (std::size_t k = 0; k < chart.panels.size(); ++k) {
     const ChartPanel& panel = chart.panels[k];
     for (std::size_t a = 0; a < panel.areas.size(); ++a) {
-      text += fmt::format("\n\n# {} {}; columns: lowest and highest x, lowest and highest y\n", block_of_area(k, a),
+      text += fmt::format("\n\n# {} {}; columns: lowest and highest x, lowest and highest y\n", block_of(k, "area", a),
                           plain_text(panel.areas[a].legend));
       for (const auto& [x_low, x_high, y_low, y_high] : panel.areas[a].boxes) {
         text += fmt::format("{:.10g} {:.10g} {:.10g} {:.10g}\n", x_low, x_high, y_low, y_high);

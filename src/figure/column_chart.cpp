@@ -135,7 +135,7 @@ void add_events(ChartPanel& panel, const Table& events, const Pair& pair, const 
   const auto name = events.find("event");
   const auto x = events.find(pair.x);
   const auto y = events.find(pair.y);
-  if (!name || !x || !y || events.row_count() == 0 || !events.columns()[*name].holds_words()) return;
+  if (!name || !x || !y || !events.columns()[*name].holds_words()) return;
   const std::vector<double> along = values_of(events, *x, x_axis);
   const std::vector<double> up = values_of(events, *y, y_axis);
   for (std::size_t row = 0; row < events.row_count(); ++row) {
@@ -180,10 +180,8 @@ ColumnChart column_chart(const std::vector<fs::path>& paths, const ColumnChoice&
     std::ranges::move(references_of(table), std::back_inserter(figure.chart.references));
     const bool is_first = pairs.empty();
     if (is_first) pairs = panels_of(table, choice, path);
-    const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
-    std::error_code ignored;
-    const Table events =
-        !is_sweep(path) && fs::exists(folder / "events.csv", ignored) ? read_table(folder / "events.csv") : Table{};
+    const fs::path folder = folder_of(file);
+    const Table events = is_sweep(path) ? Table{} : read_events(folder);
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const std::size_t x = column_in(table, pairs[k].x, file, is_sweep(path));
       const std::size_t y = column_in(table, pairs[k].y, file, false);

@@ -14,6 +14,7 @@
 #include "figure/figure.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/text_width.hpp"
+#include "scenario/cells.hpp"
 #include "scenario/text_file.hpp"
 
 namespace monograin::figure {
@@ -22,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double k_x_label_cm = 1.05;  // from an axis down to the middle of its label
-constexpr std::string_view k_minus = "\u2212";
 // A logarithmic axis with more decades leaves out some labels. Labels side by side run into each other sooner than
 // labels above each other.
 constexpr double k_most_decades_along = 5.0;
@@ -217,7 +217,7 @@ std::string label_string(std::string_view enhanced) {
   char before = ' ';
   for (const char c : enhanced) {
     const bool is_minus = c == '-' && k_before_a_minus.find(before) != std::string_view::npos;
-    text += is_minus ? k_minus : std::string_view(&c, 1);
+    text += is_minus ? k_minus_sign : std::string_view(&c, 1);
     before = c;
   }
   const bool changes_font = text.find_first_of("{^_") != std::string::npos;

@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view k_displacement = ".displacement";
+constexpr std::string_view k_events_table = "events.csv";
 
 /// A positive number of the header, by which values are divided.
 [[nodiscard]] std::optional<double> header_scale(const Table& table, std::string_view key) {
@@ -81,13 +82,14 @@ class StateReader {
   return curve;
 }
 
-[[nodiscard]] std::vector<EventMark> event_marks(const Table& events, const std::string& driven) {
+[[nodiscard]] std::vector<EventMark> event_marks(const fs::path& folder, const std::string& driven) {
+  const Table events = read_events(folder);
   const auto name = events.find("event");
   const auto contact_class = events.find("class");
   std::vector<EventMark> marks;
   if (events.row_count() == 0) return marks;
   if (!name || !events.columns()[*name].holds_words() || !contact_class) {
-    throw FigureError("it has no columns 'class' and 'event'");
+    throw FigureError(fmt::format("{}: it has no columns 'class' and 'event'", (folder / k_events_table).string()));
   }
   const bool names_classes = events.columns()[*contact_class].holds_words();
   for (std::size_t row = 0; row < events.row_count(); ++row) {
@@ -98,17 +100,6 @@ class StateReader {
     }
   }
   return marks;
-}
-
-[[nodiscard]] std::vector<EventMark> read_events(const fs::path& file, const std::string& driven) {
-  std::error_code ignored;  // a file whose status is not available cannot be read either; read_table() reports that
-  if (!fs::exists(file, ignored) && !ignored) return {};
-  const Table events = read_table(file);
-  try {
-    return event_marks(events, driven);
-  } catch (const FigureError& fault) {
-    throw FigureError(fmt::format("{}: {}", file.string(), fault.what()));
-  }
 }
 
 /// True if two curves hide each other: they differ by less than the width of a line.
@@ -214,6 +205,14 @@ Table read_table(const fs::path& file) {
   }
 }
 
+fs::path folder_of(const fs::path& file) { return fs::absolute(file).lexically_normal().parent_path(); }
+
+Table read_events(const fs::path& folder) {
+  std::error_code error;  // a file whose status is not available cannot be read either; read_table() reports that
+  const bool is_missing = !fs::exists(folder / k_events_table, error) && !error;
+  return is_missing ? Table{} : read_table(folder / k_events_table);
+}
+
 std::vector<std::string> references_of(const Table& history) {
   const Model* model = find_model(history.header_value("model"));
   return model == nullptr ? std::vector<std::string>{} : reference_texts(*model);
@@ -273,7 +272,7 @@ bool RunCurves::has(Quantity quantity) const {
 RunCurves read_run(const fs::path& run) {
   std::error_code ignored;
   const fs::path file = fs::is_directory(run, ignored) ? run / "history.csv" : run;
-  const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+  const fs::path folder = folder_of(file);
   const Table history = read_table(file);
   if (!history.find("time")) {
     throw FigureError(
@@ -294,7 +293,7 @@ RunCurves read_run(const fs::path& run) {
                    .radius = header_scale(history, "R0"),
                    .youngs_modulus = header_scale(history, "E"),
                    .yield_stress = header_scale(history, "Y"),
-                   .events = read_events(folder / "events.csv", driven)};
+                   .events = event_marks(folder, driven)};
   for (const std::string& name : classes) curves.contacts.push_back(contact_curve(history, driven, name));
   if (std::ranges::none_of(k_quantities, [&](Quantity quantity) { return curves.has(quantity); })) {
     throw FigureError(fmt::format("{}: all values are undefined", file.string()));

@@ -17,6 +17,12 @@ namespace monograin::figure {
 /// Reads a table of a run. @throws FigureError if it cannot be read
 [[nodiscard]] Table read_table(const std::filesystem::path& file);
 
+/// Folder of a file, by its whole path.
+[[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// Reads the events of a run from its folder; none if there is no such file. @throws FigureError if it cannot be read
+[[nodiscard]] Table read_events(const std::filesystem::path& folder);
+
 /// References of the model that a history's header names, one per line; none if this version has no such model.
 [[nodiscard]] std::vector<std::string> references_of(const Table& history);
 
