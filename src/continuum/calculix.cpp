@@ -324,7 +324,6 @@ SectorSolution run_calculix(const SectorProblem& problem, const fs::path& ccx, c
       progress ? [&] { progress(completed_steps(folder / (name + ".sta"))); } : std::function<void()>();
   const int code = run_program(ccx, {name}, folder, log, meanwhile);
   SectorSolution solution{.states = read_states(contents(folder / (name + ".dat")), problem), .failure = {}};
-  if (solution.states.size() > problem.instants.size()) solution.states.resize(problem.instants.size());
   if (solution.states.size() < problem.instants.size()) {
     const std::string reason = failure_in(contents(log));
     const std::string end = code < 0 ? fmt::format("was ended by signal {} ({})", -code, strsignal(-code))

@@ -238,10 +238,7 @@ double largest_motion(const Motion& motion, const std::vector<std::size_t>& inst
 /// The first contact class that moves at all; the last if none does.
 std::size_t driven_class(const Motion& motion) {
   for (std::size_t c = 0; c + 1 < motion.classes.size(); ++c) {
-    const double start = motion.instants.front().contacts[c].displacement;
-    const bool moves = std::ranges::any_of(
-        motion.instants, [&](const MotionInstant& instant) { return instant.contacts[c].displacement != start; });
-    if (moves) return c;
+    if (motion.moves(c)) return c;
   }
   return motion.classes.size() - 1;
 }

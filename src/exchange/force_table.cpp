@@ -3,24 +3,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <stdexcept>
 
 namespace monograin {
 namespace {
 
-bool moves(const Motion& motion, std::size_t contact_class) {
-  const auto displacement = [&](const MotionInstant& instant) { return instant.contacts[contact_class].displacement; };
-  return std::ranges::any_of(motion.instants, [&](const MotionInstant& instant) {
-    return displacement(instant) != displacement(motion.instants.front());
-  });
-}
-
 std::size_t index_of(const Motion& motion, const std::optional<std::string>& name) {
   for (std::size_t i = 0; i < motion.classes.size(); ++i) {
     if (name && motion.classes[i] != *name) continue;
-    if (moves(motion, i)) return i;
+    if (motion.moves(i)) return i;
     if (name) throw std::invalid_argument(fmt::format("the walls of contact class '{}' do not move", *name));
   }
   if (!name) throw std::invalid_argument("no wall moves");

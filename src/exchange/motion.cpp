@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <stdexcept>
@@ -30,6 +31,12 @@ double value_of(const Table& history, std::size_t row, std::optional<std::size_t
 }
 
 }  // namespace
+
+bool Motion::moves(std::size_t contact_class) const {
+  const auto displacement = [&](const MotionInstant& instant) { return instant.contacts[contact_class].displacement; };
+  return std::ranges::any_of(
+      instants, [&](const MotionInstant& instant) { return displacement(instant) != displacement(instants.front()); });
+}
 
 Motion motion_of(const CheckedScenario& scenario, const Table& history) {
   const Scene scene = make_scene(scenario);

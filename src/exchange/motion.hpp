@@ -51,6 +51,8 @@ struct Motion {
   [[nodiscard]] double distance(const MovingWall& wall, const MotionInstant& instant) const {
     return initial_radius - overlap(wall, instant);
   }
+  /// True if the walls of a contact class move.
+  [[nodiscard]] bool moves(std::size_t contact_class) const;
 };
 
 /// Reads the motion from the history of a scenario's run.
