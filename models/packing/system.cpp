@@ -56,7 +56,11 @@ void System::start(std::span<double> y) {
 void System::begin_step(std::span<const Ramp> ramps, std::span<double> y, std::vector<Event>& log) {
   ramp_ = ramps[0];
   if (ramp_.control != branch_.control()) branch_ = ControlledBranch(branch_.law(), ramp_.control);
-  if (branch_.law().given.plasticity && ramp_.direction() < 0) throw DomainError(Limit::no_unloading_law);
+  if (branch_.law().given.plasticity && ramp_.direction() < 0) {
+    // A target may be the present value but for its round-off.
+    if (ramp_.start - ramp_.end > k_same_value * ramp_.start) throw DomainError(Limit::no_unloading_law);
+    ramp_.end = ramp_.start;
+  }
   // After a change of control, the packing may stand where the new controlled quantity falls during compaction.
   if (is_jammed() && y[k_fraction] > branch_.range().end * (1.0 + k_same_value)) throw DomainError(branch_.limit());
   if (!is_jammed()) at_rest_ = y[k_fraction];

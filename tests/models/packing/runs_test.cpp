@@ -449,5 +449,18 @@ TEST(PackingUnloading, OfPlasticParticlesThatOnlyTheRunFindsStopsIt) {
   EXPECT_EQ(run_.record.limit, Limit::no_unloading_law) << run_.record.message;
 }
 
+TEST(PackingUnloading, IsNoneIfATargetIsThePresentValueButForRoundOff) {
+  const Parameters p = published(1.0);
+  const std::vector<Step> steps{to_fraction(0.9), to_stress(1e6)};
+  for (const char* integrator : k_integrators) {
+    const double reached = run(scenario_of(p, steps), integrator).last("packing_fraction");
+    std::vector<Step> longer = steps;
+    longer.push_back(to_fraction(reached * (1.0 - 1e-14)));
+    const TestRun run_ = run(scenario_of(p, longer), integrator);
+    EXPECT_EQ(run_.record.status, RunStatus::complete) << integrator << ": " << run_.record.message;
+    EXPECT_NEAR(run_.last("packing_fraction"), reached, 1e-6) << integrator;
+  }
+}
+
 }  // namespace
 }  // namespace monograin::packing::runs_test
