@@ -11,6 +11,7 @@
 
 #include "scenario/integrators.hpp"
 #include "scenario/units.hpp"
+#include "scenario/words.hpp"
 #include "system/awaited_events.hpp"
 
 namespace monograin {
@@ -454,6 +455,16 @@ std::vector<ForeignKey> foreign_keys(std::span<const string_view> names, std::sp
   return foreign;
 }
 
+/// Why keys that other models use do not belong here, and what this model uses.
+std::string unused_by(const Model& model, std::span<const KeySpec> own) {
+  std::vector<string_view> names;
+  for (const KeySpec& key : own) {
+    if (!is_in(names, key.name)) names.push_back(key.name);
+  }
+  return fmt::format("is not used by model '{}'; expected {}{}", model.name, names.size() > 1 ? "one of " : "",
+                     listed(names));
+}
+
 std::vector<string_view> material_names_of_all_models() {
   std::vector<string_view> names{"ludwik", "preset"};
   for (const Model& model : model_catalogue()) {
@@ -486,8 +497,7 @@ void add_loading(Language& language, const Model& model) {
   std::vector<KeySpec> own_step_keys;
   for (const StepForm& form : language.steps) std::ranges::copy(form.keys, std::back_inserter(own_step_keys));
 
-  const std::string unused = fmt::format("is not used by model '{}'", model.name);
-  language.foreign_step_keys = foreign_keys(k_step_keys, own_step_keys, unused);
+  language.foreign_step_keys = foreign_keys(k_step_keys, own_step_keys, unused_by(model, own_step_keys));
   if (model.has_walls()) {
     language.foreign_step_keys.push_back({"sine", "stands in a target: displacement = { sine = { ... } }"});
   }
@@ -496,9 +506,10 @@ void add_loading(Language& language, const Model& model) {
         foreign_keys(names_of(own_step_keys), form.keys, fmt::format("does not go with '{}' in one step", form.key));
     std::ranges::copy(language.foreign_step_keys, std::back_inserter(form.foreign));
   }
-  language.foreign_until_keys = foreign_keys(k_quantity_keys, language.until, unused);
-  if (!model.has_walls()) language.foreign_until_keys.push_back({"wall", unused});
-  language.foreign_loading = foreign_keys(k_loading_keys, language.loading, unused);
+  const std::string unused_condition = unused_by(model, language.until);
+  language.foreign_until_keys = foreign_keys(k_quantity_keys, language.until, unused_condition);
+  if (!model.has_walls()) language.foreign_until_keys.push_back({"wall", unused_condition});
+  language.foreign_loading = foreign_keys(k_loading_keys, language.loading, unused_by(model, language.loading));
 }
 
 void add_material_and_options(Language& language, const Model& model) {
@@ -506,8 +517,8 @@ void add_material_and_options(Language& language, const Model& model) {
   language.material = material_keys(model);
   if (model.power_law_of != nullptr) language.ludwik = ludwik_keys();
   for (const OptionKey& option : model.options) language.options.push_back(option_key(option));
-  const std::string unused = fmt::format("is not used by model '{}'", model.name);
-  language.foreign_material = foreign_keys(material_names_of_all_models(), language.material, unused);
+  language.foreign_material =
+      foreign_keys(material_names_of_all_models(), language.material, unused_by(model, language.material));
 }
 
 void add_homes(Language& language) {
@@ -544,7 +555,8 @@ Language make_language(const Model* info) {
   if (info != nullptr && !info->has_walls()) {
     language.particle.clear();
     std::erase_if(language.root, [](const KeySpec& key) { return key.name == "particle"; });
-    language.foreign_tables.push_back({"particle", fmt::format("is not used by model '{}'", info->name)});
+    language.foreign_tables.push_back(
+        {"particle", fmt::format("is not used by model '{}', which has no walls", info->name)});
   }
   add_loading(language, info != nullptr ? *info : k_any_model);
   add_homes(language);

@@ -150,7 +150,8 @@ const std::vector<FaultRow> k_rows{
     FaultRow{"KeyOfAnotherModel",
              8,
              "yield_stress = \"50 MPa\"\nstrength = \"1 MPa\"",
-             {"die.toml:9:1: key 'strength' is not used by model 'mdr'"}},
+             {"die.toml:9:1: key 'strength' is not used by model 'mdr'; expected one of youngs_modulus, poisson_ratio, "
+              "yield_stress, surface_energy"}},
     FaultRow{"PoissonAboveHalf",
              7,
              "poisson_ratio = 0.6",
@@ -243,7 +244,8 @@ const std::vector<FaultRow> k_rows{
     FaultRow{"StepOfAnotherModel",
              12,
              "displacement = 0\nstrain = 0.1",
-             {"die.toml:13:1: key 'strain' is not used by model 'mdr'"}},
+             {"die.toml:13:1: key 'strain' is not used by model 'mdr'; expected one of displacement, duration, rate, "
+              "until, force, hold, detach, cycle, steps"}},
     FaultRow{"NoDurationNorRate",
              13,
              "",
@@ -277,7 +279,8 @@ const std::vector<FaultRow> k_rows{
     FaultRow{"UntilKeyOfMaterialPoint",
              13,
              "duration = 1\nuntil = { stress_axial = 0 }",
-             {"die.toml:14:11: key 'stress_axial' is not used by model 'mdr'"}},
+             {"die.toml:14:11: key 'stress_axial' is not used by model 'mdr'; expected one of wall, force, "
+              "displacement, pressure, contact_radius, apparent_radius, event"}},
     FaultRow{"UntilUnknownEvent",
              13,
              "duration = 1\nuntil = { event = \"yeild\" }",

@@ -63,7 +63,7 @@ TEST(NamedWalls, NeedAQuantityBesideThem) {
 TEST(NamedWalls, DoNotGoWithModelsWithoutWalls) {
   EXPECT_EQ(
       faults_of("model = \"packing\"\n[[loading.steps]]\nstrain = 0.1\nduration = 1\nuntil = { wall = \"axial\" }\n"),
-      Lines{"die.toml:5:11: key 'wall' is not used by model 'packing'"});
+      Lines{"die.toml:5:11: key 'wall' is not used by model 'packing'; expected event"});
 }
 
 }  // namespace

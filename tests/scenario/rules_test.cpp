@@ -63,8 +63,11 @@ TEST(Ludwik, IsRefusedBesideThePowerLawAndWithValuesOutOfRange) {
       (Lines{"die.toml:5:10: ludwik: the yield stress plus K must be positive, but is 0"}));
   EXPECT_EQ(faults_of(scenario_with("hardening", "ludwik = { yield_stress = 1, strength = 1 }", k_ramp)),
             (Lines{"die.toml:5:10: key 'exponent' is missing in ludwik; expected for example exponent = 0.35"}));
-  EXPECT_EQ(faults_of(scenario_with("semimech", k_steel + "\nludwik = { }", k_ramp)),
-            (Lines{"die.toml:8:1: key 'ludwik' is not used by model 'semimech'"}));
+  EXPECT_EQ(
+      faults_of(scenario_with("semimech", k_steel + "\nludwik = { }", k_ramp)),
+      (Lines{
+          "die.toml:8:1: key 'ludwik' is not used by model 'semimech'; expected one of youngs_modulus, poisson_ratio, "
+          "yield_stress"}));
 }
 
 TEST(Ludwik, OrThePowerLawHasToBeGiven) {
@@ -154,11 +157,14 @@ TEST(CompressibleRules, RefuseNumbersOutOfRangeAndQuantitiesTheLawDoesNotHave) {
             (Lines{"die.toml:15:5: k = 0: out of range; expected a number above 0 and up to 1e+100",
                    "die.toml:16:9: alpha = 0.9: out of range; expected a number from 1 to 1e+100",
                    "die.toml:17:8: beta = -1: out of range; expected a number above 0 and up to 1e+100"}));
-  EXPECT_EQ(faults_of(granule_with(k_granule + "\neta = 10", "")),
-            (Lines{"die.toml:9:1: key 'eta' is not used by model 'compressible'"}));
+  EXPECT_EQ(
+      faults_of(granule_with(k_granule + "\neta = 10", "")),
+      (Lines{"die.toml:9:1: key 'eta' is not used by model 'compressible'; expected one of preset, stiffness_ratio, "
+             "shear_ratio, tensile_ratio, nu0, yield_pressure"}));
   EXPECT_EQ(faults_of(scenario_with("compressible", k_granule,
                                     "[[loading.steps]]\ndisplacement = 0.1\nduration = 1\nuntil = { pressure = 1 }\n")),
-            (Lines{"die.toml:14:11: key 'pressure' is not used by model 'compressible'"}));
+            (Lines{"die.toml:14:11: key 'pressure' is not used by model 'compressible'; expected one of wall, force, "
+                   "displacement, event"}));
 }
 
 TEST(Objections, NameTheNumberThatIsOutside) {
