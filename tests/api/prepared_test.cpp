@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -166,16 +166,18 @@ INSTANTIATE_TEST_SUITE_P(ReadyScenarios, MapOf, testing::ValuesIn(ready_names())
 TEST(PreparedScenario, MapsTheEndOfARunWithoutItsRows) {
   const PreparedScenario prepared(ready_scenario("die.toml"), {"material.yield_stress"});
   const std::vector<double> samples(50, 45e6);
-  const auto seconds = [&](const char* formula) {
-    double least = std::numeric_limits<double>::infinity();
-    for (int repeat = 0; repeat < 5; ++repeat) {
-      const auto start = std::chrono::steady_clock::now();
-      static_cast<void>(prepared.map(samples, std::vector<std::string>{formula}, {.threads = 1}));
-      least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    }
-    return least;
+  const auto processor_time = [&](const char* formula) {
+    const std::clock_t start = std::clock();
+    static_cast<void>(prepared.map(samples, std::vector<std::string>{formula}, {.threads = 1}));
+    return static_cast<double>(std::clock() - start);
   };
-  EXPECT_LT(seconds("end(axial.force)"), 0.6 * seconds("max(work)"));  // 0.23 measured
+  double of_end = std::numeric_limits<double>::infinity();
+  double of_rows = std::numeric_limits<double>::infinity();
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    of_end = std::min(of_end, processor_time("end(axial.force)"));
+    of_rows = std::min(of_rows, processor_time("max(work)"));
+  }
+  EXPECT_LT(of_end, 0.6 * of_rows);  // 0.23 measured
 }
 
 TEST(PreparedScenario, EndsAMapWhenItIsTold) {
