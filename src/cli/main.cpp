@@ -78,10 +78,10 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-std::string names_of(const std::vector<const CLI::App*>& commands) {
+std::vector<std::string> names_of(const std::vector<const CLI::App*>& commands) {
   std::vector<std::string> names;
   for (const CLI::App* command : commands) names.push_back(command->get_name());
-  return fmt::format("{}", fmt::join(names, ", "));
+  return names;
 }
 
 /// Values of an option as they were typed; the parser may have changed its own copies.
@@ -144,7 +144,7 @@ std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app, std
   const std::vector<CLI::App*> named = app.get_subcommands();
   if (named.empty()) {
     return fmt::format("a command is missing; there are {}. 'monograin --help' says what they do",
-                       names_of(commands_of(app)));
+                       fmt::join(names_of(commands_of(app)), ", "));
   }
   const CLI::App* deepest = named.front();
   std::string whole_name = deepest->get_name();
@@ -154,7 +154,8 @@ std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app, std
   }
   const CLI::App& command = *deepest;
   if (const auto kinds = commands_of(command); !kinds.empty()) {
-    return fmt::format("{0}: expected one of {1}. 'monograin {0} --help' says more", whole_name, names_of(kinds));
+    return fmt::format("{0}: expected one of {1}. 'monograin {0} --help' says more", whole_name,
+                       fmt::join(names_of(kinds), ", "));
   }
   std::string fault;
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
@@ -181,14 +182,11 @@ std::string fault_of_line(const CLI::ParseError& error, const CLI::App& app, std
 /// missing command.
 bool names_no_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return false;
-  const std::vector<const CLI::App*> commands = commands_of(app);
-  if (std::ranges::find(commands, argv[1], [](const CLI::App* c) { return c->get_name(); }) != commands.end())
-    return false;
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands) names.push_back(command->get_name());
+  const std::vector<std::string> names = names_of(commands_of(app));
+  if (std::ranges::find(names, argv[1]) != names.end()) return false;
   const std::string nearest = did_you_mean(argv[1], std::vector<std::string_view>(names.begin(), names.end()));
   say("monograin: this version has no command '{}'{}\n", shown(std::string_view(argv[1])),
-      nearest.empty() ? "; it has " + names_of(commands) : nearest);
+      nearest.empty() ? fmt::format("; it has {}", fmt::join(names, ", ")) : nearest);
   return true;
 }
 

@@ -35,6 +35,7 @@ void say(fmt::format_string<Args...> format, Args&&... args) {
 
 /// An entry of a list: a head, and a text in lines of at most 80 characters that all begin at a column. The text begins
 /// on a new line if the head reaches that column.
+/// @param text  not empty
 [[nodiscard]] std::string list_entry(std::string_view head, std::size_t column, std::string_view text);
 
 /// Prints warnings about a file or a run, a line each.

@@ -176,18 +176,18 @@ class SweepReader {
 
   void make_runs(const Section& root, std::span<const sweep::PlacedConstraint> constraints,
                  std::optional<std::uint64_t> seed, sweep::PlannedRuns& planned) {
-    const bool is_table = design_ == "table";
-    DesignTable table;
+    std::optional<DesignTable> table;
     std::vector<std::string> units;
-    if (is_table) {
-      if (!read_table(root, table)) return;
-      units = take_columns(table);
+    if (design_ == "table") {
+      table = read_table(root);
+      if (!table) return;
+      units = take_columns(*table);
       if (faults_.size() > 0) return;
     }
     // A name may be a key that is misspelt in [vary].
     if (are_keys_known_) sweep::check_names(constraints, factors_, design_ != "maxpro", faults_);
-    if (is_table) {
-      planned.make_rows(table, units);
+    if (table) {
+      planned.make_rows(*table, units);
     } else if (sweep::is_one_of(design_, sweep::k_random_designs) && design_ != "maxpro") {
       planned.make_samples(design_, *seed, joint_);
     } else if (faults_.size() == 0) {
@@ -195,10 +195,10 @@ class SweepReader {
     }
   }
 
-  /// @return false, with a fault, if there is no table
-  [[nodiscard]] bool read_table(const Section& root, DesignTable& table) {
+  /// The design's table; none, with a fault, if it cannot be read.
+  [[nodiscard]] std::optional<DesignTable> read_table(const Section& root) {
     const std::string name = root.text("table");
-    if (name.empty()) return false;
+    if (name.empty()) return std::nullopt;
     const fs::path file = source_.file.parent_path() / name;
     const auto [text, problem] = read_text_file(file, k_largest_text);
     if (!problem.empty() || text.size() > k_largest_text) {
@@ -207,11 +207,10 @@ class SweepReader {
           fmt::format("table = \"{}\": {} ({}); expected a table with a column for each key, its path relative "
                       "to the sweep's folder",
                       shown(name), problem.empty() ? "the file is too large" : problem, on_one_line(file.string())));
-      return false;
+      return std::nullopt;
     }
     take_file({"table", name, text});
-    table = parse_design_table(text, file.string(), faults_);
-    return true;
+    return parse_design_table(text, file.string(), faults_);
   }
 
   /// Puts the factors into the order of the columns; factors in [vary] keep their ranges and lists.
