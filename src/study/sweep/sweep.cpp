@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -325,18 +326,19 @@ class Rows {
 
   [[nodiscard]] SweepRow row_of(std::size_t run) { return records_[places_[run].record].row(places_[run].begin); }
   [[nodiscard]] const std::string& layout_of(std::size_t run, const SweepRow& row) const {
-    return records_[places_[run].record].layouts().at(row.layout);
+    return records_[places_[run].record].layouts().at(row.layout).headings;
   }
 
   /// Columns of all runs in the order of the runs, final values before extremes.
-  [[nodiscard]] std::vector<std::string> all_columns() {
+  [[nodiscard]] std::vector<std::string> all_columns() const {
+    std::vector<SweepLayout> layouts;
+    for (const SweepRecord& record : records_) {
+      std::ranges::copy_if(record.layouts(), std::back_inserter(layouts), &SweepLayout::has_rows);
+    }
+    std::ranges::sort(layouts, {}, &SweepLayout::first_run);
     std::vector<std::string> columns;
-    const std::string* last = nullptr;
-    for (std::size_t run = 0; run < places_.size(); ++run) {
-      const std::string& layout = layout_of(run, row_of(run));
-      if (&layout == last) continue;
-      last = &layout;
-      for (const std::string_view heading : split(layout)) {
+    for (const SweepLayout& layout : layouts) {
+      for (const std::string_view heading : split(layout.headings)) {
         if (std::ranges::find(columns, heading) == columns.end()) columns.emplace_back(heading);
       }
     }
@@ -379,6 +381,7 @@ class Rows {
     }
     if (options.progress) options.progress(all.runs_now, runs.size());
   });
+  journal.flush();
   if (with_warnings > 0) {
     all.warnings.push_back(
         fmt::format("{} of {} runs warn; run {}: {}", with_warnings, all.runs_now, first, fmt::join(of_first, "; ")));

@@ -24,6 +24,8 @@ constexpr std::string_view k_journal = "monograin-sweep";
 constexpr std::string_view k_columns = "columns";
 constexpr std::string_view k_row = "row";
 
+constexpr std::chrono::milliseconds k_longest_gathering{100};
+
 [[noreturn]] void fail(const fs::path& file, std::string_view problem) {
   throw std::runtime_error(fmt::format("{}: {}", file.string(), problem));
 }
@@ -56,6 +58,17 @@ std::string_view take_cell(std::string_view& text) {
   return count;
 }
 
+/// @param text  of a line, after its kind
+[[nodiscard]] SweepRow row_of(std::string_view text) {
+  SweepRow row;
+  row.run = to_count(take_cell(text));
+  row.status = take_cell(text);
+  row.reason = take_cell(text);
+  row.layout = to_count(take_cell(text));
+  row.cells = text;
+  return row;
+}
+
 }  // namespace
 
 void LinesDigest::add(std::string_view line) noexcept {
@@ -86,29 +99,29 @@ SweepRecord::SweepRecord(const fs::path& file, const std::string& digest)
            "is the journal of another sweep, or of this one before its sweep file, its scenario, a table or the "
            "program changed; remove it to begin anew, or choose another folder");
     }
-    if (kind == k_columns) layouts_.emplace_back(cells);
-    if (kind == k_row) rows_.push_back({to_count(take_cell(cells)), length_});
+    if (kind == k_columns) layouts_.push_back({std::string(cells)});
+    if (kind == k_row) {
+      const SweepRow row = row_of(cells);
+      rows_.push_back({row.run, length_});
+      std::size_t& first = layouts_.at(row.layout).first_run;
+      first = std::min(first, row.run);
+    }
     length_ += line.size() + 1;
   }
   stream_.clear();
+  stream_.seekg(0);
 }
 
 SweepRow SweepRecord::row(std::uint64_t begin) {
   std::string line;
-  const auto place = static_cast<std::streamoff>(begin);
-  if (stream_.tellg() != place) stream_.seekg(place);
+  if (begin != position_) stream_.seekg(static_cast<std::streamoff>(begin));
   std::getline(stream_, line);
+  position_ = begin + line.size() + 1;
   const std::optional<std::string_view> payload = payload_of(line);
   if (!payload) fail(file_, "cannot be read again: another program has changed it");
   std::string_view cells = *payload;
   take_cell(cells);
-  SweepRow row;
-  row.run = to_count(take_cell(cells));
-  row.status = take_cell(cells);
-  row.reason = take_cell(cells);
-  row.layout = to_count(take_cell(cells));
-  row.cells = cells;
-  return row;
+  return row_of(cells);
 }
 
 SweepJournal::SweepJournal(fs::path file, const std::string& digest) : file_(std::move(file)) {
@@ -120,29 +133,41 @@ SweepJournal::SweepJournal(fs::path file, const std::string& digest) : file_(std
     if (ftruncate(descriptor_, static_cast<off_t>(record.length())) != 0) {
       fail(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
     }
-    for (const std::string& columns : record.layouts()) layouts_.emplace(columns, layouts_.size());
-    if (record.length() == 0) write(fmt::format("{},{}", k_journal, digest));
+    for (const SweepLayout& layout : record.layouts()) layouts_.emplace(layout.headings, layouts_.size());
+    if (record.length() == 0) add_line(fmt::format("{},{}", k_journal, digest));
+    flush();
   } catch (...) {
     close(descriptor_);
     throw;
   }
 }
 
-SweepJournal::~SweepJournal() { close(descriptor_); }
+SweepJournal::~SweepJournal() {
+  try {
+    flush();
+  } catch (const std::exception&) {  // the next call of the sweep computes these runs again
+  }
+  close(descriptor_);
+}
 
 void SweepJournal::append(const SweepRow& row, const std::string& columns) {
   const auto [layout, is_new] = layouts_.emplace(columns, layouts_.size());
-  if (is_new) write(fmt::format("{},{}", k_columns, columns));
-  write(fmt::format("{},{},{},{},{},{}", k_row, row.run, row.status, row.reason, layout->second, row.cells));
+  if (is_new) add_line(fmt::format("{},{}", k_columns, columns));
+  add_line(fmt::format("{},{},{},{},{},{}", k_row, row.run, row.status, row.reason, layout->second, row.cells));
+  if (std::chrono::steady_clock::now() - last_flush_ > k_longest_gathering) flush();
 }
 
-void SweepJournal::write(const std::string& payload) {
-  const std::string line = fmt::format("{} {}\n", line_digest(payload), payload);
-  for (std::string_view rest = line; !rest.empty();) {
-    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+void SweepJournal::add_line(const std::string& payload) {
+  gathered_.append(line_digest(payload)).append(" ").append(payload).append("\n");
+}
+
+void SweepJournal::flush() {
+  last_flush_ = std::chrono::steady_clock::now();
+  while (!gathered_.empty()) {
+    const ssize_t written = write(descriptor_, gathered_.data(), gathered_.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
-    rest.remove_prefix(static_cast<std::size_t>(written));
+    gathered_.erase(0, static_cast<std::size_t>(written));
   }
 }
 

@@ -1,10 +1,12 @@
 /// Journal of the finished runs of a sweep, from which an interrupted sweep continues.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -32,8 +34,16 @@ struct SweepRow {
   std::size_t run = 0;     ///< from 1
   std::string status;      ///< complete, stopped, failed, refused
   std::string reason;      ///< why it is not complete
-  std::size_t layout = 0;  ///< index of the columns that the cells belong to
+  std::size_t layout = 0;  ///< index of the layout
   std::string cells;
+};
+
+/// Columns that the cells of rows belong to.
+struct SweepLayout {
+  std::string headings;
+  std::size_t first_run = std::numeric_limits<std::size_t>::max();  ///< least number of a run with these columns
+
+  [[nodiscard]] bool has_rows() const noexcept { return first_run != std::numeric_limits<std::size_t>::max(); }
 };
 
 /// An existing journal: the positions of its rows, which themselves stay in the file.
@@ -48,8 +58,7 @@ class SweepRecord {
     std::uint64_t begin = 0;
   };
   [[nodiscard]] const std::vector<Place>& rows() const noexcept { return rows_; }
-  /// Headings of columns.
-  [[nodiscard]] const std::vector<std::string>& layouts() const noexcept { return layouts_; }
+  [[nodiscard]] const std::vector<SweepLayout>& layouts() const noexcept { return layouts_; }
   /// Number of bytes in complete lines; the rest of the file was cut off during writing.
   [[nodiscard]] std::uint64_t length() const noexcept { return length_; }
 
@@ -59,32 +68,37 @@ class SweepRecord {
  private:
   std::filesystem::path file_;
   std::ifstream stream_;
-  std::vector<std::string> layouts_;
+  std::vector<SweepLayout> layouts_;
   std::vector<Place> rows_;
   std::uint64_t length_ = 0;
+  std::uint64_t position_ = 0;  ///< in the stream
 };
 
 /// A journal to which rows are appended. Every line begins with its own digest, by which an incomplete line is
-/// recognized. When append() has returned, the row survives the end of the process.
+/// recognized. Rows are gathered for a tenth of a second; a process that is killed loses no more than these.
 class SweepJournal {
  public:
   /// Begins a journal or continues one, without its incomplete end.
   /// @throws std::runtime_error as SweepRecord, and if another process uses the journal
   SweepJournal(std::filesystem::path file, const std::string& digest);
-  ~SweepJournal();
+  ~SweepJournal();  ///< flushes, but reports no error
   SweepJournal(const SweepJournal&) = delete;
   SweepJournal& operator=(const SweepJournal&) = delete;
 
   /// @param columns  headings of the row's cells; row.layout is ignored
-  /// @throws std::runtime_error where the row cannot be written
+  /// @throws std::runtime_error where rows cannot be written
   void append(const SweepRow& row, const std::string& columns);
+  /// Writes the gathered rows. @throws std::runtime_error where they cannot be written
+  void flush();
 
  private:
-  void write(const std::string& payload);
+  void add_line(const std::string& payload);
 
   std::filesystem::path file_;
   int descriptor_ = -1;
   std::unordered_map<std::string, std::size_t> layouts_;
+  std::string gathered_;  ///< complete lines
+  std::chrono::steady_clock::time_point last_flush_{};
 };
 
 }  // namespace monograin

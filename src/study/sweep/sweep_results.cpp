@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <fstream>
 #include <istream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
 #include "catalogue.hpp"
 #include "history/run.hpp"
@@ -80,15 +82,26 @@ struct Digests {
                   file.string()));
 }
 
+void expect_written(const std::ostream& stream, const fs::path& file) {
+  if (stream) return;
+  throw std::runtime_error(
+      fmt::format("{}: cannot be written: {}", file.string(), std::generic_category().message(errno)));
+}
+
+/// The digest of the rows, which stands before them, is known after the last row, and has the same length as any other.
 void write_as_csv(const Sweep& sweep, const fs::path& file, const TableLines& lines) {
-  LinesDigest digest;
-  lines([&digest](std::string_view line) { digest.add(line); });
-  write_text_file(file, [&](const TextSink& sink) {
-    sink(header_of(sweep, digest.word()));
+  write_file_by_name(file, [&](const fs::path& hidden) {
+    std::ofstream stream(hidden, std::ios::binary);
+    LinesDigest digest;
+    stream << header_of(sweep, digest.word());
     lines([&](std::string_view line) {
-      sink(line);
-      sink("\n");
+      digest.add(line);
+      stream << line << '\n';
+      expect_written(stream, file);
     });
+    stream.seekp(0);
+    stream << header_of(sweep, digest.word()) << std::flush;
+    expect_written(stream, file);
   });
 }
 
@@ -146,11 +159,10 @@ void write_as_hdf5(const Sweep& sweep, const fs::path& file, const TableLines& l
     stream << std::string(block - length, '\n');
     stream.seekg(static_cast<std::streamoff>(length));
     const std::string digest = digest_of_rest(stream);
-    const bool is_read = stream.eof() && !stream.bad();
-    stream.clear();
+    if (!stream.bad()) stream.clear();  // of the end
     stream.seekp(0);
     stream << header_of(sweep, digest) << std::flush;
-    if (!is_read || !stream) throw std::runtime_error(file.string() + ": cannot be written");
+    expect_written(stream, file);
   });
 }
 
