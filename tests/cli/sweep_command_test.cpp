@@ -80,9 +80,14 @@ configuration = "simple"
 steps = [{ displacement = { table = "waves.csv", time = "time[s]", value = "displacement[um]" } }]
 )toml");
   write_text(path("values.csv"), "material.yield_stress[MPa]\n20\n40\n");
-  write_text(path("sweep.toml"), "scenario = \"scenes/scene.toml\"\ndesign = \"table\"\ntable = \"values.csv\"\n");
+  write_text(path("sweep.toml"), R"(title = "batch 12"
+scenario = "scenes/scene.toml"
+design = "table"
+table = "values.csv"
+)");
   ASSERT_EQ(monograin("sweep sweep.toml -o one").code, 0) << text("stderr.txt");
   const auto record = nlohmann::json::parse(text("one/sweep.json"));
+  EXPECT_EQ(record.at("title"), "batch 12");
   EXPECT_TRUE(record.at("citation").contains("mdr")) << record.dump(2);
   EXPECT_EQ(record.at("versions").at("monograin"), version());
   write_text(path("elsewhere/sweep.toml"), record.at("text").get<std::string>());

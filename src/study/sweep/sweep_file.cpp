@@ -69,6 +69,7 @@ class SweepReader {
     std::string digest = text_digest(determining);
 
     return {.name = source_.file.stem().string(),
+            .title = root.text("title"),
             .design = design_,
             .models = std::move(models),
             .factors = sweep_factors(),

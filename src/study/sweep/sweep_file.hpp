@@ -24,7 +24,8 @@ struct BandRequest {
 };
 
 struct Sweep {
-  std::string name;                   ///< of the file, without folder and extension
+  std::string name;  ///< of the file, without folder and extension
+  std::string title{};
   std::string design;                 ///< grid, table, maxpro, sobol, halton, lhs, random, saltelli, morris
   std::vector<std::string> models{};  ///< of the scenario, or those that are varied
   std::vector<SweepFactor> factors;

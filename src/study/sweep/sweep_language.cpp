@@ -19,6 +19,7 @@ bool is_one_of(std::string_view design, std::string_view listed) {
 
 std::vector<KeySpec> root_keys(bool contains_scenario) {
   return {
+      key_of(Kind::text, "title", "what is varied", "\"granules, batch 12\""),
       required(key_of(contains_scenario ? Kind::table : Kind::file, "scenario",
                       "scenario that is varied, or the name of its file",
                       contains_scenario ? "[scenario]" : "\"die.toml\"")),
@@ -87,6 +88,7 @@ std::vector<KeySpec> band_keys() {
 
 std::string text_of_runs(const toml::table& tree) {
   toml::table runs = tree;
+  runs.erase("title");
   runs.erase("results");
   if (runs.erase("bands") > 0) runs.insert_or_assign("histories", true);
   std::ostringstream text;

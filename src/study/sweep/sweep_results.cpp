@@ -128,6 +128,7 @@ void write_as_csv(const Sweep& sweep, const fs::path& file, const TableLines& li
   for (const std::string& model : sweep.models) citation[model] = reference_texts(*find_model(model));
   return {{"program", "monograin"},
           {"sweep", sweep.name},
+          {"title", sweep.title},
           {"digest", sweep.digest},
           {"design", sweep.design},
           {"seed", sweep.seed ? Json(*sweep.seed) : Json()},
