@@ -137,6 +137,7 @@ int show_laws_for(const std::string& file) {
   const toml::table scenario = parse_document(own.text, file);
   const std::string configuration = scenario["loading"]["configuration"].value_or("");
   const auto table = fe_table_of(configuration);
+  constexpr std::size_t k_column = 14;  // of the remarks
   std::vector<MarkdownRow> rows{{"law", "scene", "force off finite elements"}};
   std::string remarks;
   for (const Model& model : model_catalogue()) {
@@ -145,17 +146,18 @@ int show_laws_for(const std::string& file) {
     const bool has_distance = table && trial.outcome != "cannot";
     rows.push_back(
         {std::string(model.name), trial.outcome, has_distance ? distance_of(*table, model.name, trial.depth) : "-"});
-    if (!trial.remark.empty()) remarks += fmt::format("{}: {}\n", model.name, trial.remark);
+    if (!trial.remark.empty()) remarks += list_entry(model.name, k_column, trial.remark);
   }
   std::string text;
   append_markdown(text, rows);
   text += fmt::format("\n{}\n", remarks);
-  text +=
+  text += list_entry(
+      "", 0,
       table
           ? "\"Force off finite elements\": largest deviation of the force of the walls that drive, loading the named "
-            "material\nin this configuration, in the bands of displacement that the scene passes. The material of "
-            "the scene may be\nnearer, or farther off: monograin continuum computes that.\n"
-          : "There are no stored finite-element results for these walls; monograin continuum may compute them.\n";
+            "material in this configuration, in the bands of displacement that the scene passes. The material of "
+            "the scene may be nearer, or farther off: monograin continuum computes that."
+          : "There are no stored finite-element results for these walls; monograin continuum may compute them.");
   print_data("{}", text);
   return k_success;
 }

@@ -224,12 +224,14 @@ int compare(const CompareOptions& options) {
   say("relative errors of {} against {}, the reference\n", options.other, options.reference);
   const std::string place = "at " + options.x;
   const std::size_t width = std::max<std::size_t>(10, place.size() + 2);
-  print_data("{:<26}{:>11}{:>{}}{:>10}{:>12}{:>12}{:>9}\n", "column", "L-infinity", place, width, "L2", "area error",
-             "peak error", "covered");
+  std::size_t longest = 6;
+  for (const CurveDifference& difference : comparison.curves) longest = std::max(longest, width_of(difference.y));
+  print_data("{:<{}}{:>11}{:>{}}{:>9}{:>9}{:>9}{:>8}\n", "column", longest, "L-infinity", place, width, "L2", "area",
+             "peak", "covered");
   bool is_above = false;
   for (const CurveDifference& d : comparison.curves) {
-    print_data("{:<26}{:>11.4g}{:>{}.5g}{:>10.4g}{:>12.4g}{:>12.4g}{:>7.1f} %\n", d.y, d.linf, d.linf_at, width, d.l2,
-               d.area_error, d.peak_error, 100.0 * d.coverage);
+    print_data("{:<{}}{:>11.3g}{:>{}.5g}{:>9.3g}{:>9.3g}{:>9.3g}{:>6.1f} %\n", d.y, longest, d.linf, d.linf_at, width,
+               d.l2, d.area_error, d.peak_error, 100.0 * d.coverage);
     is_above = is_above || !(d.linf <= options.tolerance.value_or(k_infinity));
   }
   for (const Gap& gap : comparison.gaps) print_data("{}: {} {}\n", options.other, gap.column, gap.problem);

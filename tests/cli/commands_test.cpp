@@ -238,7 +238,7 @@ TEST_F(Commands, ModelsForAScenarioSayWhichLawsCanRunItAndHowFarTheyAreOff) {
   }
   EXPECT_NE(line_of("hertz").find("rubber"), std::string::npos) << outcome.out;
   EXPECT_NE(line_of("similarity").find("| cannot "), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("\nsimilarity: key 'hardening_exponent' is missing in [material]"), std::string::npos)
+  EXPECT_NE(outcome.out.find("\nsimilarity    key 'hardening_exponent' is missing in [material]"), std::string::npos)
       << outcome.out;
   EXPECT_EQ(outcome.out.find("material-point"), std::string::npos) << "has no walls";
   EXPECT_EQ(files(), before) << "nothing is written";
@@ -575,9 +575,22 @@ TEST_F(Commands, HelpEndsWithAnExample) {
 }
 
 TEST_F(Commands, HelpAndModelsFitATerminalOf80Columns) {
-  std::vector<std::string> commands{"--help",           "run --help",   "plot --help",  "calibrate --help",
-                                    "models --help",    "sweep --help", "data --help",  "export lammps --help",
-                                    "continuum --help", "bench --help", "stress --help"};
+  std::vector<std::string> commands{"--help",
+                                    "run --help",
+                                    "plot --help",
+                                    "calibrate --help",
+                                    "models --help",
+                                    "sweep --help",
+                                    "data --help",
+                                    "export lammps --help",
+                                    "continuum --help",
+                                    "bench --help",
+                                    "stress --help",
+                                    "models --for " MONOGRAIN_SOURCE_DIR "/scenarios/die.toml",
+                                    "compare elastic softer"};
+  write_text(path("small.toml"), k_small);
+  ASSERT_EQ(monograin("run small.toml -o elastic").code, 0);
+  ASSERT_EQ(monograin("run small.toml --set material.youngs_modulus='0.9 GPa' -o softer").code, 0);
   std::istringstream models(monograin("models").out);
   for (std::string line; std::getline(models, line);) commands.push_back("models " + line.substr(0, line.find(' ')));
   ASSERT_GE(commands.size(), 20U);

@@ -212,8 +212,9 @@ std::string_view word_of(Bound bound) {
 /// A number to six digits; a dash if it is undefined.
 std::string shown_number(double value) { return number_or_dash(value, 6); }
 
-std::string with_unit(double value, const std::string& unit) {
-  return unit.empty() || !std::isfinite(value) ? shown_number(value) : shown_number(value) + ' ' + unit;
+std::string with_unit(double value, const std::string& unit, int digits) {
+  const std::string number = number_or_dash(value, digits);
+  return unit.empty() || !std::isfinite(value) ? number : number + ' ' + unit;
 }
 
 std::string calibration_text(const Calibration& calibration, const CalibrationResult& result) {

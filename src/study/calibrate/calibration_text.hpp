@@ -15,7 +15,7 @@ namespace monograin {
 
 /// A number to six digits, for comparison with others; a dash if it is undefined.
 [[nodiscard]] std::string shown_number(double value);
-[[nodiscard]] std::string with_unit(double value, const std::string& unit);
+[[nodiscard]] std::string with_unit(double value, const std::string& unit, int digits = 6);
 
 /// Correlations of parameters as a table; a dash for those that the data do not determine.
 [[nodiscard]] std::vector<TextRow> correlation_rows(const std::vector<FreeParameter>& free,

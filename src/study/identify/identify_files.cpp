@@ -74,8 +74,10 @@ std::string planned_text(const ExperimentPlan& plan, const ExpectedErrors& error
   std::vector<TextRow> rows{{"parameter", "value", "std. error", "relative"}};
   for (std::size_t k = 0; k < plan.free.size(); ++k) {
     const FreeParameter& parameter = plan.free[k];
-    const auto own = [&](double si) { return with_unit(si / parameter.unit_factor, parameter.unit); };
-    rows.push_back({parameter.key.path, own(plan.values[k]), own(errors.uncertainty.standard_error(k)),
+    const auto own = [&](double si, int digits) {
+      return with_unit(si / parameter.unit_factor, parameter.unit, digits);
+    };
+    rows.push_back({parameter.key.path, own(plan.values[k], 6), own(errors.uncertainty.standard_error(k), 2),
                     plan.values[k] == 0.0 && errors.uncertainty.is_determined[k] ? "-" : shown_error(plan, errors, k)});
   }
   std::string text = fmt::format("planned: {}\n{}", planned_names(plan), aligned(rows));
