@@ -7,6 +7,7 @@ Asks the program for its commands, models and JSON Schema, runs the ready scenar
 
     docs/generated/            parts that pages include, figures, references.bib, doxygen's XML
     docs/reference/models/     a page for each model
+    docs/reference/python/     a page for each module of the package
     docs/tables/               a page for each table of plots/
 
 These folders are ignored by git. What the program says and what this script knows of it (the meaning of a column, the
@@ -17,6 +18,7 @@ import argparse
 import concurrent.futures
 import csv
 import importlib.util
+import inspect
 import json
 import math
 import os
@@ -27,17 +29,20 @@ import subprocess
 import sys
 import tempfile
 import tomllib
-import types
 from xml.etree import ElementTree
 
 DOCS = pathlib.Path(__file__).resolve().parent
 ROOT = DOCS.parent
 GENERATED = DOCS / "generated"
 MODEL_PAGES = DOCS / "reference" / "models"
+PYTHON_PAGES = DOCS / "reference" / "python"
 TABLES = DOCS / "tables"
 
 # Scenarios whose figures pages show.
 FIGURES = ("die", "uniaxial", "adhesion", "snap-off", "force", "free-centre", "late-wall", "cycles")
+
+# Modules of the package monograin whose public names users import from the package, in the order of the site.
+PYTHON_MODULES = ("runs", "prepared", "tables", "studies", "elements", "catalogue", "errors")
 
 # Programs of examples/cpp that pages show.
 CPP_EXAMPLES = ("run_scenario", "own_law", "sweep", "calibrate")
@@ -898,29 +903,56 @@ def write_examples():
     shutil.copytree(ROOT / "examples" / "python", copies)
 
 
-def public_modules(module):
-    """The names of a module and of the modules that it, and they in turn, name in __all__."""
-    names = [module.__name__]
-    for name in getattr(module, "__all__", []):
-        if isinstance(getattr(module, name), types.ModuleType):
-            names += public_modules(getattr(module, name))
-    return names
+def first_sentence(docstring):
+    """The first sentence of a docstring in Markdown: roles of Sphinx become code."""
+    paragraph = " ".join(inspect.cleandoc(docstring).split("\n\n")[0].split())
+    return re.split(r"(?<=[.?:]) ", re.sub(r":\w+:`~?([^`]+)`", r"`\1`", paragraph))[0].rstrip(".:")
+
+
+def toctree(pages):
+    return "```{toctree}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
+
+
+def write_python_page(name, title, directives):
+    text = f"# {title}\n\n```{{eval-rst}}\n" + "\n".join(directives) + "```\n"
+    (PYTHON_PAGES / f"{name}.md").write_text(text, encoding="utf-8")
 
 
 def write_python_api():
-    if importlib.util.find_spec("monograin") is not None:
-        package = importlib.import_module("monograin")
-        modules = public_modules(package)
-        text = ""
-        for module in modules:
-            text += f"## `{module}`\n\n```{{eval-rst}}\n.. automodule:: {module}\n   :members:\n```\n\n"
-        write("python-api.md", text)
-        return f"{len(modules)} modules of {pathlib.Path(package.__file__).parent}"
-    if (ROOT / "python").is_dir():
-        fail("the tree has a package in python/, but this interpreter cannot import monograin; run tools/docs, which "
-             "builds it, or install it")
-    write("python-api.md", "```{note}\nThis version of monograin comes without its Python package.\n```\n")
-    return "left out: the tree has no folder python/"
+    """A page for each module in which public names are defined, a page for each law, and a list of the names."""
+    if importlib.util.find_spec("monograin") is None:
+        fail("this interpreter cannot import monograin; run tools/docs, which builds the package, or install it")
+    package = importlib.import_module("monograin")
+    shutil.rmtree(PYTHON_PAGES, ignore_errors=True)
+    PYTHON_PAGES.mkdir()
+    text = ""
+    listed = {"__version__", "laws"}
+    for name in PYTHON_MODULES:
+        module = importlib.import_module(f"monograin.{name}")
+        title = first_sentence(module.__doc__)
+        own = [key for key, value in vars(module).items()
+               if key in package.__all__ and value.__module__ == module.__name__]
+        listed.update(own)
+        kinds = [("class", "   :members:\n") if isinstance(getattr(module, key), type) else ("function", "")
+                 for key in own]
+        write_python_page(name, title, [f".. auto{kind}:: monograin.{key}\n{options}"
+                                        for key, (kind, options) in zip(own, kinds)])
+        rows = [[f"{{py:obj}}`~monograin.{key}`", first_sentence(getattr(module, key).__doc__)] for key in own]
+        text += f"## {title}\n\n" + table(["name", "purpose"], rows) + "\n"
+    if listed != set(package.__all__):
+        fail(f"no module of PYTHON_MODULES defines {', '.join(set(package.__all__) - listed)}")
+    laws = [f"laws.{name}" for name in package.laws.__all__]
+    write_python_page("laws", first_sentence(package.laws.__doc__), [".. automodule:: monograin.laws\n"])
+    with (PYTHON_PAGES / "laws.md").open("a", encoding="utf-8") as page:
+        page.write("\n" + toctree(laws))
+    for law in laws:
+        directive = f".. automodule:: monograin.{law}\n   :members:\n   :ignore-module-all:\n"
+        write_python_page(law, f"`{law}`", [directive])
+    rows = [[f"{{py:mod}}`~monograin.{law}`", first_sentence(importlib.import_module(f"monograin.{law}").__doc__)]
+            for law in laws]
+    text += "## [Contact laws in closed form](/reference/python/laws.md)\n\n" + table(["module", "law"], rows) + "\n"
+    write("python-api.md", text + toctree([f"python/{name}" for name in (*PYTHON_MODULES, "laws")]))
+    return f"{len(PYTHON_MODULES)} modules and {len(laws)} laws of {pathlib.Path(package.__file__).parent}"
 
 
 def declarations_of(xml, header):
@@ -963,9 +995,6 @@ def declarations_of(xml, header):
 
 def write_cpp_api():
     headers = sorted((ROOT / "include" / "monograin").glob("*.hpp"))
-    if not headers:
-        write("cpp-api.md", "```{note}\nThis version of monograin comes without installed headers.\n```\n")
-        return "left out: the tree has no include/monograin/*.hpp"
     output = GENERATED / "doxygen"
     shutil.rmtree(output, ignore_errors=True)
     output.mkdir(parents=True)

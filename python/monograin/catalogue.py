@@ -1,4 +1,4 @@
-"""Models, the scenario language, and ready scenarios."""
+"""Catalogue: models, the scenario language, ready scenarios."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Many runs of one scenario with different values of some keys."""
+"""Prepared scenarios: many runs of one scenario with different values of some keys."""
 
 from __future__ import annotations
 

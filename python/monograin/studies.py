@@ -1,4 +1,4 @@
-"""Sweeps, calibrations, plans of experiments and comparisons."""
+"""Studies: sweeps, calibrations, plans of experiments, comparisons."""
 
 from __future__ import annotations
 

@@ -21,9 +21,10 @@ MOST_WORDS = 900
 TOP = ("bench", "cmake", "docs", "examples", "include", "models", "plots", "python", "scenarios", "src", "tests",
        "tools")
 # Folders that docs/generate.py and Sphinx make.
-MADE = tuple(ROOT / "docs" / name for name in ("generated", "reference/models", "tables", "howto/python-examples"))
+MADE = tuple(ROOT / "docs" / name for name in ("generated", "reference/models", "reference/python", "tables",
+                                               "howto/python-examples"))
 # Names that stand for others, and what a build or a run makes.
-NO_FILES = re.compile(r"NAME|FILE|SCENE|\*|<|\.\.\.|^docs/(generated|reference/models|tables)")
+NO_FILES = re.compile(r"NAME|FILE|SCENE|\*|<|\.\.\.|^docs/(generated|reference/(models|python)|tables)")
 
 
 def pages():

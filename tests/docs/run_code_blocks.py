@@ -35,7 +35,9 @@ import tomllib
 from dataclasses import dataclass
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-MADE = ("docs/generated/", "docs/reference/models/", "docs/tables/", "docs/howto/python-examples/")  # by tools/docs
+# By tools/docs.
+MADE = ("docs/generated/", "docs/reference/models/", "docs/reference/python/", "docs/tables/",
+        "docs/howto/python-examples/")
 RUN_LANGUAGES = ("sh", "console", "toml", "python", "cpp")
 MARKED_LANGUAGES = ("cmake", "dockerfile")
 LONGEST = 600  # seconds that a block may take
