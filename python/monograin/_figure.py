@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 # Colours of Okabe and Ito, which colour-blind readers can distinguish.
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+# Curves of the whole particle, beside curves of contacts in the colours above.
+_GREYS = ("#303030", "#7A7A7A", "#A8A8A8")
 _STYLES = {"loading": "-", "unloading": "--", "reloading": ":"}
 # Sparse filled marks of the curves after the first one, which differ in grey print, too.
 _CURVE_MARKS = ("", "o", "^", "s", "D", "p", "v")
@@ -153,9 +155,11 @@ def _draw(
     x = run[sheet.column] / sheet.scale
     # Curves that the axes show already keep their colours.
     used = len({line.get_color() for line in axes.lines if line.get_linestyle() != "None"})
+    shows_contacts = any(legend for shown in sheet.panels for legend, _ in shown.columns)
     for k, (legend, column) in enumerate(panel.columns):
+        colours = _GREYS if shows_contacts and not legend else _COLOURS
         y = _values(run.history, panel, column)
-        colour = _COLOURS[(used + k) % len(_COLOURS)]
+        colour = colours[(used + k) % len(colours)]
         name = ": ".join(filter(None, (label, legend)))
         line = {"color": colour, "marker": _CURVE_MARKS[(used + k) % len(_CURVE_MARKS)], "markersize": 3.5}
         for i, (phase, piece) in enumerate(phases):

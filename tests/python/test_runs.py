@@ -533,6 +533,25 @@ def test_runs_share_the_axes_of_a_figure_and_differ_in_colour(die):
         softer.plot(["axial.force", "axial.pressure"], axes=axes)
 
 
+def test_a_colour_stands_for_one_curve_in_all_panels(die):
+    pytest.importorskip("matplotlib")
+    figure = die.run().plot(label="hard")
+    die.replace({"material.yield_stress": "30 MPa"}).run().plot(label="soft", axes=figure.axes)
+    names: dict[str, set[str]] = {}
+    for axes in figure.axes:
+        for line in axes.lines:
+            if not line.get_label().startswith("_") and line.get_linestyle() != "None":
+                names.setdefault(line.get_color(), set()).add(line.get_label())
+    assert sorted(map(sorted, names.values())) == [
+        ["hard"],
+        ["hard: axial"],
+        ["hard: lateral"],
+        ["soft"],
+        ["soft: axial"],
+        ["soft: lateral"],
+    ]
+
+
 def test_an_event_has_one_mark_in_all_panels_of_a_figure(die):
     pytest.importorskip("matplotlib")
     figure = die.run().plot()
