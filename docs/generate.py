@@ -7,7 +7,7 @@ Asks the program for its commands, models and JSON Schema, runs the ready scenar
 
     docs/generated/            parts that pages include, figures, references.bib, doxygen's XML
     docs/reference/models/     a page for each model
-    docs/reference/python/     a page for each module of the package
+    docs/reference/api/        a page for each module of the package, and for each C++ header
     docs/tables/               a page for each table of plots/
 
 These folders are ignored by git. What the program says and what this script knows of it (the meaning of a column, the
@@ -35,7 +35,7 @@ DOCS = pathlib.Path(__file__).resolve().parent
 ROOT = DOCS.parent
 GENERATED = DOCS / "generated"
 MODEL_PAGES = DOCS / "reference" / "models"
-PYTHON_PAGES = DOCS / "reference" / "python"
+API_PAGES = DOCS / "reference" / "api"
 TABLES = DOCS / "tables"
 
 # Scenarios whose figures pages show.
@@ -906,16 +906,22 @@ def write_examples():
 def first_sentence(docstring):
     """The first sentence of a docstring in Markdown: roles of Sphinx become code."""
     paragraph = " ".join(inspect.cleandoc(docstring).split("\n\n")[0].split())
-    return re.split(r"(?<=[.?:]) ", re.sub(r":\w+:`~?([^`]+)`", r"`\1`", paragraph))[0].rstrip(".:")
+    return re.split(r"(?<=[.?]) ", re.sub(r":\w+:`~?([^`]+)`", r"`\1`", paragraph))[0].rstrip(".:")
 
 
 def toctree(pages):
     return "```{toctree}\n:hidden:\n\n" + "\n".join(pages) + "\n```\n"
 
 
-def write_python_page(name, title, directives):
-    text = f"# {title}\n\n```{{eval-rst}}\n" + "\n".join(directives) + "```\n"
-    (PYTHON_PAGES / f"{name}.md").write_text(text, encoding="utf-8")
+def write_api_page(name, text):
+    page = API_PAGES / f"{name}.md"
+    page.parent.mkdir(parents=True, exist_ok=True)
+    page.write_text(text, encoding="utf-8")
+
+
+def write_python_page(name, title, directives, rest=""):
+    text = "\n".join(directives)
+    write_api_page(f"python/{name}", f"# {title}\n\n```{{eval-rst}}\n{text}```\n{rest}")
 
 
 def write_python_api():
@@ -923,13 +929,11 @@ def write_python_api():
     if importlib.util.find_spec("monograin") is None:
         fail("this interpreter cannot import monograin; run tools/docs, which builds the package, or install it")
     package = importlib.import_module("monograin")
-    shutil.rmtree(PYTHON_PAGES, ignore_errors=True)
-    PYTHON_PAGES.mkdir()
     text = ""
     listed = {"__version__", "laws"}
     for name in PYTHON_MODULES:
         module = importlib.import_module(f"monograin.{name}")
-        title = first_sentence(module.__doc__)
+        title = first_sentence(module.__doc__).partition(":")[0]
         own = [key for key, value in vars(module).items()
                if key in package.__all__ and value.__module__ == module.__name__]
         listed.update(own)
@@ -942,21 +946,21 @@ def write_python_api():
     if listed != set(package.__all__):
         fail(f"no module of PYTHON_MODULES defines {', '.join(set(package.__all__) - listed)}")
     laws = [f"laws.{name}" for name in package.laws.__all__]
-    write_python_page("laws", first_sentence(package.laws.__doc__), [".. automodule:: monograin.laws\n"])
-    with (PYTHON_PAGES / "laws.md").open("a", encoding="utf-8") as page:
-        page.write("\n" + toctree(laws))
+    write_python_page("laws", first_sentence(package.laws.__doc__), [".. automodule:: monograin.laws\n"],
+                      "\n" + toctree(laws))
     for law in laws:
         directive = f".. automodule:: monograin.{law}\n   :members:\n   :ignore-module-all:\n"
         write_python_page(law, f"`{law}`", [directive])
     rows = [[f"{{py:mod}}`~monograin.{law}`", first_sentence(importlib.import_module(f"monograin.{law}").__doc__)]
             for law in laws]
-    text += "## [Contact laws in closed form](/reference/python/laws.md)\n\n" + table(["module", "law"], rows) + "\n"
-    write("python-api.md", text + toctree([f"python/{name}" for name in (*PYTHON_MODULES, "laws")]))
+    text += "## [Contact laws in closed form](/reference/api/python/laws.md)\n\n" + table(["module", "law"], rows)
+    text += "\n"
+    write("python-api.md", text + toctree([f"api/python/{name}" for name in (*PYTHON_MODULES, "laws")]))
     return f"{len(PYTHON_MODULES)} modules and {len(laws)} laws of {pathlib.Path(package.__file__).parent}"
 
 
 def declarations_of(xml, header):
-    """A directive of breathe for everything that a header declares; first its own description."""
+    """A directive of breathe for everything that a header declares."""
     index = ElementTree.parse(xml / "index.xml")
     kinds = {compound.get("refid"): compound.get("kind") for compound in index.iter("compound")}
     for refid, kind in kinds.items():
@@ -967,8 +971,7 @@ def declarations_of(xml, header):
             break
     else:
         fail(f"doxygen has not read {header}")
-    brief = " ".join("".join(file.find("briefdescription").itertext()).split())
-    parts = [f"{brief}\n\n"] if brief else []
+    parts = []
     # Namespaces by the file of their description.
     namespaces = {name.text: compound.get("refid") for compound in index.iter("compound")
                   for name in [compound.find("name")] if compound.get("kind") == "namespace"}
@@ -1017,12 +1020,17 @@ def write_cpp_api():
     (output / "Doxyfile").write_text("\n".join(f"{key} = {value}" for key, value in settings.items()) + "\n",
                                      encoding="utf-8")
     run("doxygen", output / "Doxyfile")
-    text = ""
+    rows = []
     for header in headers:
         name = header.relative_to(ROOT / "include").as_posix()
-        declared = declarations_of(output / "xml", name)
-        text += f"## `<{name}>`\n\n" + "".join(declared)
-    write("cpp-api.md", text)
+        # The comment at the top of the header, which doxygen does not take for that of the file.
+        comment, _, _ = header.read_text(encoding="utf-8").partition("#pragma")
+        description = " ".join(comment.replace("///", "").split())
+        text = f"# `{header.name}`\n\n`#include <{name}>`\n\n{description}\n\n"
+        write_api_page(f"cpp/{header.stem}", text + "".join(declarations_of(output / "xml", name)))
+        rows.append([f"[`{header.name}`](/reference/api/cpp/{header.stem}.md)", first_sentence(description)])
+    pages = [f"api/cpp/{header.stem}" for header in headers]
+    write("cpp-api.md", table(["header", "content"], rows) + "\n" + toctree(pages))
     return f"{len(headers)} headers"
 
 
@@ -1050,6 +1058,7 @@ def main():
     print(f"docs/generate.py: {len(models)} models, {runs} ready scenarios run, {len(commands)} commands")
     write_examples()
     print(f"docs/generate.py: references: {write_references(program, commands)}")
+    shutil.rmtree(API_PAGES, ignore_errors=True)
     print(f"docs/generate.py: Python interface: {write_python_api()}")
     print(f"docs/generate.py: C++ interface: {write_cpp_api()}")
 

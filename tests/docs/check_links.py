@@ -21,10 +21,10 @@ MOST_WORDS = 900
 TOP = ("bench", "cmake", "docs", "examples", "include", "models", "plots", "python", "scenarios", "src", "tests",
        "tools")
 # Folders that docs/generate.py and Sphinx make.
-MADE = tuple(ROOT / "docs" / name for name in ("generated", "reference/models", "reference/python", "tables",
+MADE = tuple(ROOT / "docs" / name for name in ("generated", "reference/models", "reference/api", "tables",
                                                "howto/python-examples"))
 # Names that stand for others, and what a build or a run makes.
-NO_FILES = re.compile(r"NAME|FILE|SCENE|\*|<|\.\.\.|^docs/(generated|reference/(models|python)|tables)")
+NO_FILES = re.compile(r"NAME|FILE|SCENE|\*|<|\.\.\.|^docs/(generated|reference/(api|models)|tables)")
 
 
 def pages():

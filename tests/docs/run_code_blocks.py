@@ -36,7 +36,7 @@ from dataclasses import dataclass
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 # By tools/docs.
-MADE = ("docs/generated/", "docs/reference/models/", "docs/reference/python/", "docs/tables/",
+MADE = ("docs/generated/", "docs/reference/models/", "docs/reference/api/", "docs/tables/",
         "docs/howto/python-examples/")
 RUN_LANGUAGES = ("sh", "console", "toml", "python", "cpp")
 MARKED_LANGUAGES = ("cmake", "dockerfile")
