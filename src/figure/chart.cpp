@@ -17,6 +17,7 @@
 #include "figure/legend.hpp"
 #include "figure/page.hpp"
 #include "figure/text_width.hpp"
+#include "scenario/words.hpp"
 
 namespace monograin::figure {
 namespace {
@@ -26,6 +27,7 @@ using Style = ChartSeries::Style;
 constexpr double k_line_width = 1.8;
 constexpr unsigned k_shade = 0xECECECu;  ///< colour beyond the range of a law
 constexpr double k_text_line_cm = 0.38;
+constexpr double k_text_size = 9.0;  // [pt], unless a line is too long for it
 constexpr double k_text_margin_cm = 0.5;
 constexpr double k_a4 = 1.4142;  ///< height over width
 constexpr std::string_view k_floor_legend = "at the lower end of the axis, or below";
@@ -435,13 +437,25 @@ void make_room(const Chart& chart, Layout& layout) {
   for (Panel& panel : layout.panels) panel.axes.bottom += rise;
 }
 
+/// Size [pt] in which the longest line of text fits the page.
+[[nodiscard]] double text_size(const Chart& chart, const Layout& layout) {
+  constexpr double k_letter_cm = 0.61 * 2.54 / 72.0;  // width of a monospaced letter for each point of its size
+  std::size_t longest = 1;
+  for (const auto* lines : {&chart.head, &chart.foot}) {
+    for (const std::string& line : *lines) longest = std::max(longest, width_of(line));
+  }
+  const double fitting = (layout.width - 2.0 * k_text_margin_cm) / (k_letter_cm * static_cast<double>(longest));
+  return std::min(k_text_size, fitting);
+}
+
 /// Lines of text, the first one right below `top` [cm].
-[[nodiscard]] std::string lines_text(const std::vector<std::string>& lines, double top, const Layout& layout) {
+[[nodiscard]] std::string lines_text(const std::vector<std::string>& lines, double size, double top,
+                                     const Layout& layout) {
   std::string text;
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    text += fmt::format("set label {} {} at screen {:.4f}, {:.4f} left noenhanced font 'Monospace,7.5'\n", k + 10,
+    text += fmt::format("set label {} {} at screen {:.4f}, {:.4f} left noenhanced font 'Monospace,{:.2f}'\n", k + 10,
                         gnuplot_string(lines[k]), k_text_margin_cm / layout.width,
-                        (top - k_text_line_cm * (static_cast<double>(k) + 0.5)) / layout.height);
+                        (top - k_text_line_cm * (static_cast<double>(k) + 0.5)) / layout.height, size);
   }
   return text.empty() ? text : "unset key; unset label\n" + text + "plot [0:1] [0:1] NaN\n";
 }
@@ -491,9 +505,10 @@ std::string chart_script(const Chart& chart, Format format, const std::string& f
     text += plots_of(panel, k, axes.y, looks);
   }
   text += "unset logscale; unset object\n" + legend_text(rows, layout);
-  text += lines_text(chart.head, layout.height - k_text_margin_cm, layout);
+  const double size = text_size(chart, layout);
+  text += lines_text(chart.head, size, layout.height - k_text_margin_cm, layout);
   const double lines = static_cast<double>(line_count(rows, layout.legend.width));
-  text += lines_text(chart.foot, layout.legend.top() - k_legend_line_cm * lines - k_text_margin_cm, layout);
+  text += lines_text(chart.foot, size, layout.legend.top() - k_legend_line_cm * lines - k_text_margin_cm, layout);
   return text + k_page_foot;
 }
 

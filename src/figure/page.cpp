@@ -52,7 +52,11 @@ void make_folder(const fs::path& folder) {
       return fmt::format("svg enhanced size {},{} font 'Helvetica,Arial,sans-serif,13' background 'white'",
                          pixels(layout.width, k_svg_per_cm), pixels(layout.height, k_svg_per_cm));
     case Format::pdf:
-      return fmt::format("pdfcairo enhanced size {}cm,{:.4g}cm font 'Helvetica,10'", layout.width, layout.height);
+      // The default scale of fonts is 0.5, with which they have two thirds of their size.
+      return fmt::format(
+          "pdfcairo enhanced size {}cm,{:.4g}cm font 'Helvetica,10' fontscale 0.75 linewidth 1.5 pointscale 1.2 "
+          "dashlength 1.6",
+          layout.width, layout.height);
     case Format::png:
       return fmt::format("pngcairo enhanced size {},{} font 'Helvetica,10' fontscale 2.1 linewidth 2 pointscale 2",
                          pixels(layout.width, k_png_per_cm), pixels(layout.height, k_png_per_cm));

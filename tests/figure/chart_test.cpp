@@ -112,11 +112,14 @@ TEST(Chart, HasAPageOfA4ForItsText) {
   chart.foot = {"a  1.5", "it's b"};
   const std::string script = chart_script(chart, Format::pdf, "a.pdf", "a.dat");
   EXPECT_NE(script.find("size 17cm,24.04cm"), std::string::npos) << script;
-  EXPECT_EQ(count(script, "noenhanced font 'Monospace,7.5'"), 3U) << script;
+  EXPECT_EQ(count(script, "noenhanced font 'Monospace,9.00'"), 3U) << script;
+  EXPECT_NE(script.find("font 'Helvetica,10' fontscale 0.75 "), std::string::npos) << "else gnuplot draws 6.7 points";
   EXPECT_LT(script.find("'title_1'"), script.find("'a  1.5'"));
   chart.foot.resize(100, "more");
   EXPECT_EQ(chart_script(chart, Format::pdf, "a.pdf", "a.dat").find("size 17cm,24.04cm"), std::string::npos)
       << "many lines make the page taller";
+  chart.foot = {std::string(164, 'x')};
+  EXPECT_EQ(count(script_of(chart), "noenhanced font 'Monospace,4.53'"), 2U) << "all lines fit the page";
 }
 
 TEST(Chart, SameLegendsLookTheSameAndStandOnceInTheLegend) {

@@ -164,7 +164,7 @@ std::vector<std::string> data_lines(const Calibration& calibration) {
   return lines;
 }
 
-constexpr std::size_t k_line_length = 116;  // of a report's page
+constexpr std::size_t k_line_length = 82;  // of a report's page
 
 void append_wrapped(std::vector<std::string>& lines, std::string_view text) {
   std::ranges::move(lines_of(text, k_line_length), std::back_inserter(lines));
