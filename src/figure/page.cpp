@@ -58,8 +58,10 @@ void make_folder(const fs::path& folder) {
           "dashlength 1.6",
           layout.width, layout.height);
     case Format::png:
-      return fmt::format("pngcairo enhanced size {},{} font 'Helvetica,10' fontscale 2.1 linewidth 2 pointscale 2",
-                         pixels(layout.width, k_png_per_cm), pixels(layout.height, k_png_per_cm));
+      return fmt::format(
+          "pngcairo enhanced size {},{} font 'Helvetica,10' fontscale 2.1 linewidth 2 pointscale 2.6 "
+          "dashlength 1.8",
+          pixels(layout.width, k_png_per_cm), pixels(layout.height, k_png_per_cm));
   }
   return {};
 }
