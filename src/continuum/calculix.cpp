@@ -224,10 +224,8 @@ class CalculixInput {
   std::size_t next_element_ = 0;
 };
 
-std::string contents(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+/// All of a file that CalculiX has written.
+std::string contents(const fs::path& file) { return read_text_file(file, std::string::npos).text; }
 
 /// Number of instants that CalculiX has completed, from its file of increments.
 std::size_t completed_steps(const fs::path& file) {

@@ -6,8 +6,6 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <system_error>
@@ -37,11 +35,6 @@ constexpr const char* k_log = ".log";
         fmt::format("{} cannot be written: {}", shown_path(figure).string(), std::strerror(errno)));
   }
   return {pattern, shown_path(figure).parent_path()};
-}
-
-[[nodiscard]] std::string contents(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 [[nodiscard]] bool is_control(char c) noexcept { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }
@@ -90,7 +83,7 @@ void draw_with_gnuplot(const fs::path& gnuplot, const fs::path& figure, const st
   std::error_code failure;
   const auto size = fs::file_size(folder / drawing_name, failure);
   if (code != 0 || failure || size == 0) {
-    const std::string said = contents(folder / k_log);
+    const std::string said = read_text_file(folder / k_log, k_largest_text).text;
     const std::string end = code < 0 ? fmt::format("a signal ended it ({})", strsignal(-code)) : "it said nothing";
     throw FigureError(
         fmt::format("gnuplot could not draw {}: {}", shown_path(figure).string(), said.empty() ? end : said));
