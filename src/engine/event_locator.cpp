@@ -21,45 +21,49 @@ constexpr double k_most_of_guard = 1e-12;
 // First distance, over xi, by which a root short of zero is moved on.
 constexpr double k_round_off_of_root = 1e-15;
 constexpr double k_share_of_progress = 1e-2;  // width of the bracket of a root, over least_progress()
+// Evaluations inside a piece for which memory is reserved: at twelve nodes, and near the end of a branch.
+constexpr std::size_t k_usual_samples = 12 + k_evaluations_before_end;
 
 }  // namespace
 
-EventLocator::EventLocator(Equations& system, GuardSet& guard_set, std::size_t samples)
-    : system_(system), guard_set_(guard_set), most_samples_(samples + k_evaluations_before_end) {
-  for (auto* state : {&begin_state_, &end_state_, &guess_}) state->resize(system.unknowns().size());
+EventLocator::EventLocator(Equations& system, GuardSet& guard_set) : system_(system), guard_set_(guard_set) {
+  for (Instant* at : {&begin_, &end_, &between_, &extremum_, &root_}) at->state.resize(system.unknowns().size());
 }
 
 void EventLocator::begin_segment(double xi, std::span<const double> y) {
   ++statistics_.segments;
-  begin_ = end_ = xi;
-  std::ranges::copy(y, end_state_.begin());
-  for (auto* values : {&values_, &extremum_values_, &root_values_, &begin_values_, &end_values_})
-    values->resize(guard_set_.size());
-  samples_.reserve(most_samples_);
-  sample_values_.reserve(most_samples_ * guard_set_.size());
+  begin_.xi = end_.xi = xi;
+  std::ranges::copy(y, end_.state.begin());
+  for (Instant* at : {&begin_, &end_, &between_, &extremum_, &root_}) at->values.resize(guard_set_.size());
+  samples_.clear();
+  samples_.reserve(k_usual_samples * row_length());
   fired_.reserve(guard_set_.size());
-  evaluate_guards(end_, end_state_, end_values_);
+  evaluate_guards(xi, end_.state, end_.values);
   read_sides();
 }
 
 void EventLocator::begin_piece() {
-  begin_ = end_;
-  std::swap(begin_state_, end_state_);
-  std::swap(begin_values_, end_values_);
+  std::swap(begin_, end_);
+  end_.xi = begin_.xi;
   fired_.clear();
   forget_samples();
 }
 
 void EventLocator::sample_inside(double xi, std::span<const double> y) {
-  sample_values_.resize((samples_.size() + 1) * guard_set_.size());
-  const auto values = std::span(sample_values_).last(guard_set_.size());
+  const auto values = std::span(between_.values);
   evaluate_guards(xi, y, values);
   // A guard that is zero to within round-off keeps the side of its last value.
-  const View last = sample(samples_.size());
+  const View last = sample(sample_count());
   for (std::size_t g = 0; g < values.size(); ++g) {
     if (std::abs(values[g]) <= k_zero_guard) values[g] = last.values[g];
   }
   samples_.push_back(xi);
+  samples_.insert(samples_.end(), values.begin(), values.end());
+}
+
+void EventLocator::sample_inside(double xi) {
+  state_at(xi, between_.state);
+  sample_inside(xi, between_.state);
 }
 
 void EventLocator::evaluate_guards(double xi, std::span<const double> y, std::span<double> values) {
@@ -67,34 +71,41 @@ void EventLocator::evaluate_guards(double xi, std::span<const double> y, std::sp
   guard_set_.values(xi, y, values);
 }
 
+void EventLocator::evaluate(double xi, Instant& at) {
+  at.xi = xi;
+  state_at(xi, at.state);
+  evaluate_guards(xi, at.state, at.values);
+}
+
 /// Replaces the value of a guard that is zero, or just past zero, where the segment begins (as at first touch) by its
 /// value just ahead: the guard is on the side to which it moves.
 void EventLocator::read_sides() {
   const auto is_open = [this](std::size_t g) {
-    return std::abs(end_values_[g]) <= guard_tolerance() && guard_set_.directions()[g] * end_values_[g] >= 0.0;
+    return std::abs(end_.values[g]) <= guard_tolerance() && guard_set_.directions()[g] * end_.values[g] >= 0.0;
   };
   bool any = false;
-  for (std::size_t g = 0; g < end_values_.size(); ++g) any = any || is_open(g);
+  for (std::size_t g = 0; g < end_.values.size(); ++g) any = any || is_open(g);
   if (!any) return;
-  const double ahead = end_ + std::min(k_ahead, 0.5 * (1.0 - end_));
-  std::ranges::copy(end_state_, guess_.begin());
+  const double ahead = end_.xi + std::min(k_ahead, 0.5 * (1.0 - end_.xi));
+  std::ranges::copy(end_.state, between_.state.begin());
   try {
-    state_ahead(ahead, guess_);
-    evaluate_guards(ahead, guess_, values_);
+    state_ahead(ahead, between_.state);
+    evaluate_guards(ahead, between_.state, between_.values);
   } catch (const std::domain_error&) {
     return;  // no solution ahead: the first piece finds out how far solutions exist
   }
-  for (std::size_t g = 0; g < end_values_.size(); ++g) {
-    if (is_open(g)) end_values_[g] = values_[g];
+  for (std::size_t g = 0; g < end_.values.size(); ++g) {
+    if (is_open(g)) end_.values[g] = between_.values[g];
   }
 }
 
 /// Stored values of the guards in the order of xi: index 0 is the beginning of the piece, then come the evaluations
 /// inside it; any larger index is the end.
 EventLocator::View EventLocator::sample(std::size_t index) const {
-  if (index == 0) return {begin_, begin_values_};
-  if (index > samples_.size()) return {end_, end_values_};
-  return {samples_[index - 1], std::span(sample_values_).subspan((index - 1) * guard_set_.size(), guard_set_.size())};
+  if (index == 0) return begin_;
+  if (index > sample_count()) return end_;
+  const auto row = std::span(samples_).subspan((index - 1) * row_length(), row_length());
+  return {row.front(), row.subspan(1)};
 }
 
 bool EventLocator::any_crosses(const View& before, const View& after) const {
@@ -113,14 +124,16 @@ double EventLocator::hidden_extremum(std::size_t interval) const {
   const View b = sample(interval + 1);
   if (b.xi - a.xi < k_shortest_sampled || samples_.empty()) return b.xi;
   struct Third {
-    View view;
+    std::span<const double> values;
     double per_distance_from_b = 0.0;  ///< one over the signed distance
     double per_distance_from_a = 0.0;
   };
   std::array<Third, 2> thirds;
   std::size_t count = 0;
-  const auto add = [&](const View& view) { thirds[count++] = {view, 1.0 / (view.xi - b.xi), 1.0 / (view.xi - a.xi)}; };
-  if (interval < samples_.size()) add(sample(interval + 2));
+  const auto add = [&](const View& view) {
+    thirds[count++] = {view.values, 1.0 / (view.xi - b.xi), 1.0 / (view.xi - a.xi)};
+  };
+  if (interval < sample_count()) add(sample(interval + 2));
   if (interval > 0) add(sample(interval - 1));
 
   const auto directions = guard_set_.directions();
@@ -133,7 +146,7 @@ double EventLocator::hidden_extremum(std::size_t interval) const {
     if (at_a == 0.0 || (directions[g] != 0 && directions[g] != static_cast<int>(sign))) continue;
     const double slope = (at_b - at_a) * per_length;
     for (const Third& third : std::span(thirds).first(count)) {
-      const double next_slope = (third.view.values[g] - at_b) * third.per_distance_from_b;
+      const double next_slope = (third.values[g] - at_b) * third.per_distance_from_b;
       const double curvature = (next_slope - slope) * third.per_distance_from_a;
       if (!(sign * curvature < 0.0)) continue;
       const double own = 0.5 * (a.xi + b.xi - slope / curvature);
@@ -151,10 +164,8 @@ std::optional<EventLocator::View> EventLocator::crossed_in(std::size_t interval)
   if (any_crosses(before, after)) return after;
   const double extremum = hidden_extremum(interval);
   if (extremum == after.xi) return std::nullopt;
-  state_at(extremum, guess_);
-  evaluate_guards(extremum, guess_, extremum_values_);
-  const View between{extremum, extremum_values_};
-  if (any_crosses(before, between)) return between;
+  evaluate(extremum, extremum_);
+  if (any_crosses(before, extremum_)) return extremum_;
   return std::nullopt;
 }
 
@@ -167,7 +178,7 @@ void EventLocator::locate_event() {
   };
   std::optional<End> of_branch;
   // Intervals between two evaluations: interval i begins at sample(i).
-  for (std::size_t interval = 0; interval <= samples_.size();) {
+  for (std::size_t interval = 0; interval <= sample_count();) {
     const View before = sample(interval);
     const auto crossed = crossed_in(interval);
     if (!crossed) {
@@ -182,11 +193,11 @@ void EventLocator::locate_event() {
     } catch (const std::domain_error&) {
       // No state need exist between two evaluations if the second state is not on the branch of the first.
       const double nearer = std::midpoint(before.xi, after.xi);
-      if (nearer - begin_ < least_progress(begin_)) throw;
+      if (nearer - begin_.xi < least_progress(begin_.xi)) throw;
       interval = shorten(nearer, interval);
       continue;
     }
-    const bool is_shorter = root < end_ - least_progress(begin_);
+    const bool is_shorter = root < end_.xi - least_progress(begin_.xi);
     interval = shorten(root, interval);
     const double last_sample = sample(interval).xi;
     if (guard_set_.is_branch_end(first) && !of_branch) {
@@ -200,7 +211,7 @@ void EventLocator::locate_event() {
   }
   // The end of a branch counts as a root even if its guard is short of zero by round-off: every next piece would end
   // there as well.
-  if (of_branch && of_branch->root == end_) fired_.push_back(of_branch->guard);
+  if (of_branch && of_branch->root == end_.xi) fired_.push_back(of_branch->guard);
 }
 
 /// Collects the guards that fire at the end of the piece: the first one, and those that cross zero with it.
@@ -212,8 +223,8 @@ bool EventLocator::collect_fired(std::size_t first, const View& last, bool is_sh
   bool has_earlier = false;
   const auto directions = guard_set_.directions();
   for (std::size_t g = 0; g < directions.size(); ++g) {
-    if (g != first && !crosses(directions[g], last.values[g], end_values_[g])) continue;
-    if (g == first || !is_shorter || std::abs(end_values_[g]) <= guard_tolerance())
+    if (g != first && !crosses(directions[g], last.values[g], end_.values[g])) continue;
+    if (g == first || !is_shorter || std::abs(end_.values[g]) <= guard_tolerance())
       fired_.push_back(g);
     else
       has_earlier = true;
@@ -225,21 +236,20 @@ bool EventLocator::collect_fired(std::size_t first, const View& last, bool is_sh
 /// @param samples  number of evaluations inside the piece to keep at most
 /// @return number of evaluations left
 std::size_t EventLocator::shorten(double xi, std::size_t samples) {
-  samples_.resize(samples);
-  if (xi < end_) move_end(xi);
-  while (!samples_.empty() && samples_.back() >= end_) samples_.pop_back();
-  return samples_.size();
+  if (xi < end_.xi) move_end(xi);
+  while (samples > 0 && sample(samples).xi >= end_.xi) --samples;
+  samples_.resize(samples * row_length());
+  return samples;
 }
 
 /// Evaluates the guards between xi = last and the end that a root has given the piece, ever nearer to the end.
 void EventLocator::sample_up_to(double last) {
-  double distance = end_ - last;
+  double distance = end_.xi - last;
   for (std::size_t k = 0; k < k_evaluations_before_end; ++k) {
     distance *= k_approach_to_end;
-    if (distance < least_progress(end_)) return;
+    if (distance < least_progress(end_.xi)) return;
     try {
-      state_at(end_ - distance, guess_);
-      sample_inside(end_ - distance, guess_);
+      sample_inside(end_.xi - distance);
     } catch (const std::domain_error&) {
       continue;  // next to the end of the equations the solver may miss a state that exists
     }
@@ -261,9 +271,8 @@ double EventLocator::first_root(const View& before, const View& after, std::size
   View up_to = after;
   for (const auto& [g, share] : candidates_) {
     if (first < up_to.xi) {
-      state_at(first, guess_);
-      evaluate_guards(first, guess_, root_values_);
-      up_to = {first, root_values_};
+      evaluate(first, root_);
+      up_to = root_;
     }
     if (!crosses(directions[g], before.values[g], up_to.values[g])) continue;
     const double root = polish(g, before, up_to);
@@ -282,9 +291,8 @@ double EventLocator::polish(std::size_t guard, const View& before, const View& a
   const double round_off = std::min(k_round_off_of_guard * larger, k_most_of_guard * smaller);
   double value = 0.0;
   const auto function = [&](double xi) {
-    state_at(xi, guess_);
-    evaluate_guards(xi, guess_, values_);
-    value = values_[guard];
+    evaluate(xi, between_);
+    value = between_.values[guard];
     return std::abs(value) <= round_off ? 0.0 : value;
   };
   std::uintmax_t iterations = 100;

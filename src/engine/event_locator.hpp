@@ -21,12 +21,17 @@ class EventLocator : public Integrator {
   [[nodiscard]] Statistics statistics() const override { return statistics_; }
 
  protected:
-  /// @param samples  expected evaluations of the guards inside a piece; memory for them is reserved
-  EventLocator(Equations& system, GuardSet& guard_set, std::size_t samples = 0);
+  EventLocator(Equations& system, GuardSet& guard_set);
 
   /// Pieces shorter than this (step coordinates) have no evaluations inside, and are not searched for two crossings:
   /// guards near zero are round-off there.
   static constexpr double k_shortest_sampled = 1e-6;
+
+  /// A position of a piece, with the complete state and the values of the guards there.
+  struct Instant {
+    double xi = 0.0;
+    std::vector<double> state, values;
+  };
 
   /// Starts a segment at xi: stores the state, evaluates the guards and finds which side of zero each one is on.
   void begin_segment(double xi, std::span<const double> y);
@@ -34,26 +39,28 @@ class EventLocator : public Integrator {
   void begin_piece();
   /// Evaluates the guards inside the present piece and stores their values. xi must be beyond all earlier evaluations.
   void sample_inside(double xi, std::span<const double> y);
+  /// Finds the state at xi inside the present piece, evaluates the guards there and stores their values.
+  /// @throws std::domain_error if there is no state
+  void sample_inside(double xi);
   /// Drops the evaluations inside the piece.
   void forget_samples() noexcept { samples_.clear(); }
   /// Moves the end of the piece to the first root in it, if there is one, and collects the guards that fire there.
   void locate_event();
-  /// Evaluates the guards at (xi, y), and counts the evaluation.
-  void evaluate_guards(double xi, std::span<const double> y, std::span<double> values);
+  /// Finds state and guards at xi within the present piece. @throws std::domain_error if there is no state
+  void evaluate(double xi, Instant& at);
 
   Equations& system_;
   GuardSet& guard_set_;
-  double begin_ = 0.0;  ///< where the present piece begins; end_: where it ends (step coordinates)
-  double end_ = 0.0;
-  std::vector<double> begin_state_, end_state_;
-  std::vector<double> begin_values_, end_values_;
+  Instant begin_, end_;  ///< of the present piece
   std::vector<std::size_t> fired_;
   Statistics statistics_;
 
  private:
   /// Values of the guards at one position of the piece.
   struct View {
-    double xi = 0.0;
+    View(double position, std::span<const double> guard_values) : xi(position), values(guard_values) {}
+    View(const Instant& instant) : View(instant.xi, instant.values) {}
+    double xi;
     std::span<const double> values;
   };
 
@@ -72,7 +79,10 @@ class EventLocator : public Integrator {
   /// Ends the piece at xi and evaluates state and guards there. May end it earlier if no state exists at xi.
   virtual void move_end(double xi) = 0;
 
+  void evaluate_guards(double xi, std::span<const double> y, std::span<double> values);
   void read_sides();
+  [[nodiscard]] std::size_t row_length() const noexcept { return 1 + guard_set_.size(); }
+  [[nodiscard]] std::size_t sample_count() const noexcept { return samples_.size() / row_length(); }
   [[nodiscard]] View sample(std::size_t index) const;
   [[nodiscard]] bool any_crosses(const View& before, const View& after) const;
   [[nodiscard]] double hidden_extremum(std::size_t interval) const;
@@ -83,11 +93,8 @@ class EventLocator : public Integrator {
   void sample_up_to(double last);
   [[nodiscard]] double polish(std::size_t guard, const View& before, const View& after);
 
-  std::size_t most_samples_;           ///< evaluations inside a piece for which memory is reserved
-  std::vector<double> samples_;        ///< positions of the evaluations inside the piece, in increasing order
-  std::vector<double> sample_values_;  ///< one row of guard values for each of them
-  std::vector<double> guess_;
-  std::vector<double> values_, extremum_values_, root_values_;
+  std::vector<double> samples_;        ///< rows of a position inside the piece and the guards there, in order of xi
+  Instant between_, extremum_, root_;  ///< between two evaluations: any position, an extremum, the first root so far
   std::vector<Candidate> candidates_;
 };
 

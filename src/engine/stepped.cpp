@@ -28,8 +28,7 @@ class Stepped final : public EventLocator {
         form_(system),
         stepper_(make(form_)),
         z_(form_.size()),
-        slope_(form_.size()),
-        middle_state_(system.unknowns().size()) {}
+        slope_(form_.size()) {}
 
   void begin(double xi, std::span<const double> y) override {
     form_.begin(y, z_);
@@ -40,23 +39,23 @@ class Stepped final : public EventLocator {
 
   Advance advance() override {
     begin_piece();
-    if (begin_ >= step_end_) {
-      form_.begin_step(begin_, begin_state_);
+    if (begin_.xi >= step_end_) {
+      form_.begin_step(begin_.xi, begin_.state);
       correct();
       step_end_ = stepper_->step();
       ++statistics_.steps;
-      statistics_.last_step = step_end_ - begin_;
+      statistics_.last_step = step_end_ - begin_.xi;
     }
-    const double next_multiple = (std::floor(begin_ * k_pieces + k_at_end_of_piece) + 1.0) / k_pieces;
+    const double next_multiple = (std::floor(begin_.xi * k_pieces + k_at_end_of_piece) + 1.0) / k_pieces;
     move_end(std::min(std::min(1.0, next_multiple), step_end_));
     if (guard_set_.size() > 0) sample_middle();
     locate_event();
-    return {.xi = end_, .hit_guard = !fired_.empty()};
+    return {.xi = end_.xi, .hit_guard = !fired_.empty()};
   }
 
   void dense_output(double xi, std::span<double> y) override {
-    if (xi == end_)
-      std::ranges::copy(end_state_, y.begin());
+    if (xi == end_.xi)
+      std::ranges::copy(end_.state, y.begin());
     else
       state_at(xi, y);
   }
@@ -77,8 +76,8 @@ class Stepped final : public EventLocator {
   /// until completing finds another state than the rates have led to.
   void correct() {
     if (!form_.has_corrections()) return;
-    stepper_->state_at(begin_, z_);
-    if (form_.take_correction(begin_state_, z_)) stepper_->correct(z_);
+    stepper_->state_at(begin_.xi, z_);
+    if (form_.take_correction(begin_.state, z_)) stepper_->correct(z_);
   }
 
   void state_at(double xi, std::span<double> y) override {
@@ -88,23 +87,21 @@ class Stepped final : public EventLocator {
 
   /// Extrapolates along the tangent at the beginning of the segment.
   void state_ahead(double xi, std::span<double> y) override {
-    stepper_->state_at(end_, z_);
-    form_.rates(end_, z_, slope_);
-    for (std::size_t k = 0; k < z_.size(); ++k) z_[k] += (xi - end_) * slope_[k];
+    stepper_->state_at(end_.xi, z_);
+    form_.rates(end_.xi, z_, slope_);
+    for (std::size_t k = 0; k < z_.size(); ++k) z_[k] += (xi - end_.xi) * slope_[k];
     form_.complete(xi, z_, y);
   }
 
   /// Evaluates the guards at the middle of the piece. If a long step leads beyond an event, the middle may have no
   /// state although the end has one: the piece then ends before its middle.
   void sample_middle() {
-    while (end_ - begin_ > k_shortest_sampled) {
-      const double middle = std::midpoint(begin_, end_);
+    while (end_.xi - begin_.xi > k_shortest_sampled) {
+      const double middle = std::midpoint(begin_.xi, end_.xi);
       try {
-        state_at(middle, middle_state_);
-        sample_inside(middle, middle_state_);
-        return;
+        return sample_inside(middle);
       } catch (const std::domain_error&) {
-        move_end(std::midpoint(begin_, middle));
+        move_end(std::midpoint(begin_.xi, middle));
       }
     }
   }
@@ -113,14 +110,11 @@ class Stepped final : public EventLocator {
   /// this mode has no state.
   void move_end(double xi) override {
     for (;;) {
-      end_ = xi;
       try {
-        state_at(xi, end_state_);
-        evaluate_guards(xi, end_state_, end_values_);
-        return;
+        return evaluate(xi, end_);
       } catch (const std::domain_error&) {
-        if (xi - begin_ < least_progress(begin_)) throw;
-        xi = 0.5 * (begin_ + xi);
+        if (xi - begin_.xi < least_progress(begin_.xi)) throw;
+        xi = 0.5 * (begin_.xi + xi);
       }
     }
   }
@@ -129,7 +123,6 @@ class Stepped final : public EventLocator {
   ScaledForm form_;
   std::unique_ptr<Stepper> stepper_;
   std::vector<double> z_, slope_;
-  std::vector<double> middle_state_;
   double step_end_ = 0.0;
 };
 
