@@ -103,7 +103,8 @@ class ExplicitForm {
 
   /// Number of unknowns that are integrated: the first ones of the system.
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] const Unknown& unknown(std::size_t k) const noexcept { return system_.unknowns()[k]; }
+  [[nodiscard]] std::span<const Unknown> unknowns() const noexcept { return system_.unknowns(); }
+  [[nodiscard]] const Unknown& unknown(std::size_t k) const noexcept { return unknowns()[k]; }
 
   [[nodiscard]] bool has_dependent_unknowns() const noexcept { return system_.has_dependent_unknowns(); }
   [[nodiscard]] bool has_corrections() const noexcept { return system_.has_corrections(); }
@@ -153,6 +154,12 @@ class ExplicitForm {
   /// @throws std::domain_error where the equations end
   void rates(double xi, std::span<const double> integrated, std::span<double> rates) {
     system_.rates(xi, complete(xi, integrated), rates);
+  }
+
+  /// Does what rates() does without changing the first guess.
+  void rates_aside(double xi, std::span<const double> integrated, std::span<double> rates) {
+    complete(xi, integrated, trial_);
+    system_.rates(xi, trial_, rates);
   }
 
  private:

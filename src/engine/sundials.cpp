@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
 #include <cmath>
@@ -93,9 +94,10 @@ double polished_root(const GuardSet& guard_set, std::span<const std::size_t> fir
 
 }  // namespace
 
-LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context) {
-  LinearSolver solver(SUNLinSol_Dense(y, matrix, context));
-  if (LinearAlgebraClock::running() == nullptr) return solver;
+DenseSolver make_dense_solver(N_Vector y, SUNContext context) {
+  Matrix matrix(SUNDenseMatrix(N_VGetLength(y), N_VGetLength(y), context));
+  LinearSolver solver(SUNLinSol_Dense(y, matrix.get(), context));
+  if (LinearAlgebraClock::running() == nullptr) return {std::move(matrix), std::move(solver)};
   solver->ops->setup = [](SUNLinearSolver self, SUNMatrix of) {
     LinearAlgebraClock* clock = LinearAlgebraClock::running();
     return clock == nullptr ? SUNLinSolSetup_Dense(self, of)
@@ -106,16 +108,16 @@ LinearSolver make_dense_solver(N_Vector y, SUNMatrix matrix, SUNContext context)
     return clock == nullptr ? SUNLinSolSolve_Dense(self, of, x, b, tolerance)
                             : clock->time([&] { return SUNLinSolSolve_Dense(self, of, x, b, tolerance); });
   };
-  return solver;
+  return {std::move(matrix), std::move(solver)};
 }
 
-double root_of_step(const GuardSet& guard_set, std::vector<std::size_t>& fired, double begin, double end,
-                    double tolerance, const std::function<void(double, std::span<double>)>& values_at) {
-  if (const auto hidden = crossing_before_branch_end(guard_set, fired, begin, end, tolerance, values_at)) {
-    fired.assign(1, hidden->guard);
+double RootFunctions::locate(double begin, double end,
+                             const std::function<void(double, std::span<double>)>& values_at) {
+  if (const auto hidden = crossing_before_branch_end(guard_set_, fired_, begin, end, tolerance_, values_at)) {
+    fired_.assign(1, hidden->guard);
     return hidden->xi;
   }
-  return polished_root(guard_set, fired, begin, end, tolerance, values_at);
+  return polished_root(guard_set_, fired_, begin, end, tolerance_, values_at);
 }
 
 std::string worst_components(std::span<const Unknown> unknowns, std::span<const double> weights,

@@ -2,7 +2,6 @@
 
 #include <arkode/arkode_arkstep.h>
 #include <cvodes/cvodes.h>
-#include <fmt/format.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
@@ -134,37 +133,85 @@ struct ArkodeLibrary {
   static int last_order(void*) { return order; }
 };
 
+/// Error weights of the explicit form: one over the tolerance of each unknown, which is no finer than the round-off of
+/// xi times the rates. If a contact lasts hardly longer than that round-off, the errors of stages are of its size, and
+/// no step would keep finer tolerances.
+class ErrorWeights {
+ public:
+  /// @param tolerances  of a step
+  ErrorWeights(const Tolerances& tolerances, const ExplicitForm& form, SUNContext context)
+      : rtol_(tolerances.rtol),
+        atol_(N_VNew_Serial(static_cast<sunindextype>(form.size()), context)),
+        rates_(form.size()),
+        first_rates_(form.size()) {
+    for (std::size_t k = 0; k < form.size(); ++k) view(atol_.get())[k] = tolerances.atol * form.unknown(k).scale;
+  }
+
+  /// Starts at xi. The rates one round-off of xi after the start count for the first step: if a contact is as shallow
+  /// as that round-off, its rates at first touch are negligible beside those at the next representable xi.
+  void start(ExplicitForm& form, double xi, std::span<const double> y) {
+    std::ranges::fill(rates_, 0.0);  // rates of an earlier mode do not count
+    start_end_ = std::min(1.0, xi * (1.0 + k_round_off));
+    try {
+      form.rates_aside(start_end_, y, first_rates_);
+      if (all_finite(first_rates_)) return;
+    } catch (const std::domain_error&) {
+    }
+    std::ranges::fill(first_rates_, 0.0);
+  }
+
+  /// Takes the rates for which the library has asked last.
+  void take_rates(std::span<const double> rates) { std::ranges::copy(rates, rates_.begin()); }
+
+  /// Round-off of unknown k that comes from the round-off of xi.
+  [[nodiscard]] double round_off(std::size_t k) const noexcept { return k_round_off * std::abs(rates_[k]); }
+
+  /// Puts the weights at y. @param end  step coordinate where the last step has ended
+  void put(std::span<const double> y, double end, std::span<double> weights) const {
+    const bool is_first = end <= start_end_;
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      const double tolerated = rtol_ * std::abs(y[k]) + view(atol_.get())[k];
+      const double first = is_first ? std::abs(first_rates_[k]) : 0.0;
+      weights[k] = 1.0 / std::max(tolerated, k_round_off * std::max(first, std::abs(rates_[k])));
+    }
+  }
+
+  [[nodiscard]] double rtol() const noexcept { return rtol_; }
+  [[nodiscard]] N_Vector atol() const noexcept { return atol_.get(); }
+
+ private:
+  double rtol_;
+  NVector atol_;
+  double start_end_ = 0.0;  ///< one round-off of xi beyond the start
+  std::vector<double> rates_;
+  std::vector<double> first_rates_;  ///< at start_end_
+};
+
 template <class Library>
 class SundialsOde final : public Integrator {
  public:
   SundialsOde(OdeMethod method, Equations& system, GuardSet& guard_set, const Tolerances& tolerances,
               ForwardSensitivities* sensitivities)
-      : system_(system),
-        guard_set_(guard_set),
-        method_(method),
+      : method_(method),
         tolerances_(tolerances),
-        of_step_(of_step(tolerances, method == OdeMethod::cvode_bdf ? k_share_of_many : k_usual_share)),
-        form_(system) {
-    const auto size = static_cast<sunindextype>(form_.size());
-    for (NVector* vector : {&y_, &begin_state_, &rates_, &first_rates_, &atol_, &weights_, &errors_})
-      vector->reset(N_VNew_Serial(size, context_));
-    for (NVector* vector : {&y_, &rates_, &first_rates_}) N_VConst(0.0, vector->get());
-    for (std::size_t k = 0; k < form_.size(); ++k) {
-      view(atol_.get())[k] = of_step_.atol * form_.unknown(k).scale;
+        form_(system),
+        roots_(guard_set, tolerances),
+        weights_(of_step(tolerances, method == OdeMethod::cvode_bdf ? k_share_of_many : k_usual_share), form_,
+                 context_) {
+    for (NVector* vector : {&y_, &step_begin_.y, &between_}) vector->reset(N_VClone(weights_.atol()));
+    N_VConst(0.0, y_.get());
+    if (method_ == OdeMethod::cvode_bdf || method_ == OdeMethod::arkode_dirk)
+      newton_ = make_dense_solver(y_.get(), context_);
+    if (sensitivities != nullptr) {
+      carried_.emplace(*sensitivities, weights_.rtol(), weights_.atol(), method_ == OdeMethod::cvode_adams, context_);
     }
-    if (method_ == OdeMethod::cvode_bdf || method_ == OdeMethod::arkode_dirk) {
-      matrix_.reset(SUNDenseMatrix(size, size, context_));
-      linear_ = make_dense_solver(y_.get(), matrix_.get(), context_);
-    }
-    if (sensitivities != nullptr)
-      carried_.emplace(*sensitivities, of_step_.rtol, atol_.get(), method_ == OdeMethod::cvode_adams, context_);
     set_up();
   }
 
   void begin(double xi, std::span<const double> y) override {
     form_.begin(y, view(y_.get()));
-    segment_begin_ = xi;
-    first_state_.assign(y.begin(), y.end());
+    segment_begin_.xi = xi;
+    segment_begin_.state.assign(y.begin(), y.end());
     if (carried_) carried_->take_state(xi, y);
     start(xi, 0.0);
     last_length_ = 0.0;
@@ -172,16 +219,16 @@ class SundialsOde final : public Integrator {
   }
 
   Advance advance() override {
-    roots_.fired.clear();
+    roots_.forget_fired();
     const double begin = end_;
-    N_VScale(1.0, y_.get(), begin_state_.get());
+    N_VScale(1.0, y_.get(), step_begin_.y.get());
     if (carried_) carried_->keep();
     // Trials of a failed step may leave a first guess from which other solutions are found.
-    begin_guess_.assign(form_.guess().begin(), form_.guess().end());
+    step_begin_.guess.assign(form_.guess().begin(), form_.guess().end());
     const auto restart = [&](double step) {
-      N_VScale(1.0, begin_state_.get(), y_.get());
+      N_VScale(1.0, step_begin_.y.get(), y_.get());
       if (carried_) carried_->restore();
-      form_.guess(begin_guess_);
+      form_.guess(step_begin_.guess);
       start(begin, step);
     };
     if (corrects_begin()) {
@@ -197,8 +244,7 @@ class SundialsOde final : public Integrator {
     }
     last_length_ = end_ - begin;
     if (flag == Library::root_return) {
-      check("GetRootInfo", Library::root_info(memory_.get(), roots_.found.data()));
-      roots_.collect();
+      check("GetRootInfo", roots_.template collect<Library>(memory_.get()));
       find_root(begin);
     } else if (flag == Library::stop_return) {
       end_ = 1.0;
@@ -207,39 +253,32 @@ class SundialsOde final : public Integrator {
     return {.xi = end_, .hit_guard = flag == Library::root_return};
   }
 
-  [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return roots_.fired; }
+  [[nodiscard]] std::span<const std::size_t> fired() const noexcept override { return roots_.fired(); }
 
   void dense_output(double xi, std::span<double> y) override {
     // Interpolation may evaluate rates beside the curve, where they may not exist: the end of the step needs none.
     const bool is_at_end = xi == end_;
-    if (!is_at_end) check("GetDky", Library::derivative(memory_.get(), xi, 0, errors_.get()));
-    form_.complete(xi, view((is_at_end ? y_ : errors_).get()), y);
+    if (!is_at_end) check("GetDky", Library::derivative(memory_.get(), xi, 0, between_.get()));
+    form_.complete(xi, view((is_at_end ? y_ : between_).get()), y);
   }
 
   void dense_sensitivities(double xi) override {
     if (carried_) check("GetSens", carried_->put(memory_.get(), xi, end_));
   }
 
-  [[nodiscard]] double guard_tolerance() const noexcept override { return guard_tolerance_of(tolerances_); }
+  [[nodiscard]] double guard_tolerance() const noexcept override { return roots_.tolerance(); }
 
   [[nodiscard]] Statistics statistics() const override {
     if (past_.segments == 0) return past_;
-    Statistics now;
-    Library::steps(memory_.get(), &now.steps);
-    if (linear_) Library::jacobian_evaluations(memory_.get(), &now.jacobian_evaluations);
-    Library::error_test_failures(memory_.get(), &now.error_test_failures);
-    Library::convergence_failures(memory_.get(), &now.convergence_failures);
-    now.last_order = Library::last_order(memory_.get());
-    Library::last_step(memory_.get(), &now.last_step);
+    Statistics now = counts_since_start<Library>(memory_.get(), newton_.solver != nullptr);
     now += past_;
     now.rhs_evaluations = rhs_evaluations();
-    now.guard_evaluations = roots_.evaluations;
     return now;
   }
 
   [[nodiscard]] long rhs_evaluations() const override {
     if (past_.segments == 0) return 0;
-    return past_.rhs_evaluations + Library::rhs_evaluations(memory_.get()) + for_jacobian_;
+    return past_.rhs_evaluations + Library::rhs_evaluations(memory_.get());
   }
 
  private:
@@ -256,8 +295,8 @@ class SundialsOde final : public Integrator {
     check("WFtolerances", Library::set_weights(memory_.get(), error_weights));
     check("SetMaxNumSteps", Library::set_most_steps(memory_.get(), k_most_internal_steps));
     check("SetMaxErrTestFails", Library::set_most_failures(memory_.get(), k_most_failures));
-    if (!linear_) return;
-    check("SetLinearSolver", Library::set_linear_solver(memory_.get(), linear_.get(), matrix_.get()));
+    if (!newton_.solver) return;
+    check("SetLinearSolver", Library::set_linear_solver(memory_.get(), newton_.solver.get(), newton_.matrix.get()));
     check("SetJacFn", Library::set_jacobian(memory_.get(), jacobian));
     // With a Jacobian from a singular start, Newton's corrections are far too small and are taken for convergence.
     check("SetJacEvalFrequency", Library::set_jacobian_frequency(memory_.get(), 1));
@@ -266,37 +305,14 @@ class SundialsOde final : public Integrator {
   /// Restarts the library at xi with the state in y_. @param step  first step to try; 0: the library's choice
   void start(double xi, double step) {
     past_ = statistics();  // counters are reset with the state
-    for_jacobian_ = 0;
     end_ = xi;
-    N_VConst(0.0, rates_.get());  // rates of an earlier mode do not count
-    find_first_rates();
+    ++past_.rhs_evaluations;
+    weights_.start(form_, xi, view(y_.get()));
     check("ReInit", Library::reinit(memory_.get(), method_, right_hand_side, xi, y_.get()));
     check("SetInitStep", Library::set_first_step(memory_.get(), step));
     check("SetStopTime", Library::set_stop_time(memory_.get(), 1.0));
     if (carried_) check("SensInit", carried_->start(memory_.get(), rates_of_sensitivity));
-    // Unlisting all guards first makes the library forget which ones it had switched off.
-    check("RootInit", Library::init_roots(memory_.get(), 0, nullptr));
-    roots_.found.assign(guard_set_.size(), 0);
-    if (guard_set_.size() == 0) return;
-    check("RootInit", Library::init_roots(memory_.get(), static_cast<int>(guard_set_.size()), guards));
-    roots_.directions.assign(guard_set_.directions().begin(), guard_set_.directions().end());
-    check("SetRootDirection", Library::set_root_direction(memory_.get(), roots_.directions.data()));
-    check("SetNoInactiveRootWarn", Library::set_no_inactive_root_warning(memory_.get()));
-  }
-
-  /// Evaluates the rates one round-off of xi after the start. If a contact is as shallow as that round-off, its rates
-  /// at first touch are negligible beside those at the next representable xi.
-  void find_first_rates() {
-    start_end_ = std::min(1.0, end_ * (1.0 + k_round_off));
-    first_guess_.assign(form_.guess().begin(), form_.guess().end());
-    try {
-      ++for_jacobian_;
-      form_.rates(start_end_, view(y_.get()), view(first_rates_.get()));
-    } catch (const std::domain_error&) {
-      N_VConst(0.0, first_rates_.get());
-    }
-    if (!all_finite(view(first_rates_.get()))) N_VConst(0.0, first_rates_.get());
-    form_.guess(first_guess_);
+    check("RootInit", roots_.template list<Library>(memory_.get(), guards));
   }
 
   /// Moves the end of the step to where a guard crosses zero.
@@ -304,13 +320,13 @@ class SundialsOde final : public Integrator {
     const auto values_at = [this](double xi, std::span<double> values) {
       // Interpolation may evaluate rates beside the curve, where they may not exist.
       pending_.forget();
-      const int flag = Library::derivative(memory_.get(), xi, 0, errors_.get());
+      const int flag = Library::derivative(memory_.get(), xi, 0, between_.get());
       if (flag < 0 && pending_.domain_end()) throw *pending_.domain_end();
       check("GetDky", flag);
-      ++roots_.evaluations;
-      guard_set_.values(xi, form_.complete(xi, view(errors_.get())), values);
+      ++past_.guard_evaluations;
+      roots_.values(xi, form_.complete(xi, view(between_.get())), values.data());
     };
-    const double root = root_of_step(guard_set_, roots_.fired, begin, end_, guard_tolerance_of(tolerances_), values_at);
+    const double root = roots_.locate(begin, end_, values_at);
     if (root == end_) return;
     end_ = root;
     check("GetDky", Library::derivative(memory_.get(), end_, 0, y_.get()));
@@ -327,7 +343,7 @@ class SundialsOde final : public Integrator {
     return ode.pending_.guard([&] {
       ode.form_.rates(xi, view(y), view(dy));
       if (!all_finite(view(dy))) return false;
-      N_VScale(1.0, dy, ode.rates_.get());
+      ode.weights_.take_rates(view(dy));
       return true;
     });
   }
@@ -353,19 +369,19 @@ class SundialsOde final : public Integrator {
   /// Corrects the beginning of a step of BDF, once its error exceeds the tolerance of the curve. The method restarts
   /// after a correction, with the errors of first steps, and smaller corrections would restart it all the time. Adams'
   /// method is not corrected: it gains nothing where it is slow, at the stiff ends of segments on a yield surface.
-  /// @return true if begin_state_ has changed
+  /// @return true if step_begin_.y has changed
   bool corrects_begin() {
     if (method_ != OdeMethod::cvode_bdf || !form_.has_corrections()) return false;
-    N_VScale(1.0, begin_state_.get(), errors_.get());
-    if (corrected(end_, errors_.get(), this) != 0) return false;
-    const auto state = view(begin_state_.get());
-    const auto better = view(errors_.get());
+    N_VScale(1.0, step_begin_.y.get(), between_.get());
+    if (corrected(end_, between_.get(), this) != 0) return false;
+    const auto state = view(step_begin_.y.get());
+    const auto better = view(between_.get());
     bool is_off = false;
     for (std::size_t k = 0; k < state.size(); ++k) {
       const double size = std::max(std::abs(state[k]), form_.unknown(k).scale);
       // Where the round-off of xi is the tolerance of a step, the limit is the same multiple of it as elsewhere.
-      const double round_off = k_round_off * std::abs(view(rates_.get())[k]) / k_share_of_many;
-      is_off = is_off || std::abs(better[k] - state[k]) > std::max(tolerances_.rtol * size, round_off);
+      const double tolerated = std::max(tolerances_.rtol * size, weights_.round_off(k) / k_share_of_many);
+      is_off = is_off || std::abs(better[k] - state[k]) > tolerated;
     }
     if (is_off) std::ranges::copy(better, state.begin());
     return is_off;
@@ -393,31 +409,31 @@ class SundialsOde final : public Integrator {
   /// the domain are shortened, and that of an unknown that begins at zero is as large as its change in the step, up to
   /// its tolerance. Rates of the work may rise there like a square root, and a much smaller increment shows no slope
   /// that the step could use.
-  static int jacobian(realtype xi, N_Vector y, N_Vector dy, SUNMatrix matrix, void* self, N_Vector shifted, N_Vector,
-                      N_Vector) noexcept {
+  static int jacobian(realtype xi, N_Vector y, N_Vector dy, SUNMatrix matrix, void* self, N_Vector shifted,
+                      N_Vector weights, N_Vector) noexcept {
     static const double k_root = std::sqrt(k_epsilon);
     auto& ode = *static_cast<SundialsOde*>(self);
     double gamma = 0.0;  // step length times the coefficient of the method
     if (Library::current_gamma(ode.memory_.get(), &gamma) != 0 ||
-        Library::error_weights(ode.memory_.get(), ode.weights_.get()) != 0) {
+        Library::error_weights(ode.memory_.get(), weights) != 0) {
       return -1;
     }
     const auto values = view(y);
     const auto before = view(dy);
-    const double norm = N_VWrmsNorm(dy, ode.weights_.get());
+    const double norm = N_VWrmsNorm(dy, weights);
     constexpr double k_increment_ratio = 1e3;  // over the round-off, as in the library
     const double round_off =
         k_increment_ratio * k_epsilon * static_cast<double>(values.size()) * std::abs(gamma) * norm;
     const double least = norm > 0.0 ? round_off : 1.0;
     for (std::size_t j = 0; j < values.size(); ++j) {
       const double value = values[j];
-      const double tolerated = 1.0 / view(ode.weights_.get())[j];
+      const double tolerated = 1.0 / view(weights)[j];
       const double in_step = std::min(std::abs(gamma * before[j]), tolerated);
       double increment = std::max({k_root * std::abs(value), least * tolerated, in_step});
       const int flag = ode.pending_.guard([&] {
         const auto shift = [&](double by) {
           values[j] = value + by;
-          ++ode.for_jacobian_;
+          ++ode.past_.rhs_evaluations;
           ode.pending_.beside([&] { ode.form_.rates(xi, values, view(shifted)); });
         };
         increment = shift_within_domain(increment, shift);
@@ -433,18 +449,9 @@ class SundialsOde final : public Integrator {
     return 0;
   }
 
-  /// One over the tolerance of each unknown, which is no finer than the round-off of xi times the rates. If a contact
-  /// lasts hardly longer than that round-off, the errors of stages are of its size, and no step would keep finer
-  /// tolerances.
   static int error_weights(N_Vector y, N_Vector weights, void* self) noexcept {
     const auto& ode = *static_cast<SundialsOde*>(self);
-    const bool is_first = ode.end_ <= ode.start_end_;
-    for (std::size_t k = 0; k < view(y).size(); ++k) {
-      const double tolerated = ode.of_step_.rtol * std::abs(view(y)[k]) + view(ode.atol_.get())[k];
-      const double first = is_first ? std::abs(view(ode.first_rates_.get())[k]) : 0.0;
-      const double rate = std::max(first, std::abs(view(ode.rates_.get())[k]));
-      view(weights)[k] = 1.0 / std::max(tolerated, k_round_off * rate);
-    }
+    ode.weights_.put(view(y), ode.end_, view(weights));
     return 0;
   }
 
@@ -453,55 +460,44 @@ class SundialsOde final : public Integrator {
   /// condition that is met exactly there.
   static int guards(realtype xi, N_Vector y, realtype* values, void* self) noexcept {
     auto& ode = *static_cast<SundialsOde*>(self);
-    ++ode.roots_.evaluations;
+    ++ode.past_.guard_evaluations;
     return ode.pending_.guard([&] {
-      const std::span<const double> state =
-          xi == ode.segment_begin_ ? std::span<const double>(ode.first_state_) : ode.form_.complete(xi, view(y));
-      ode.guard_set_.values(xi, state, {values, ode.guard_set_.size()});
+      const SegmentBegin& begin = ode.segment_begin_;
+      ode.roots_.values(xi, xi == begin.xi ? begin.state : ode.form_.complete(xi, view(y)), values);
       return true;
     });
   }
 
   void check(const char* call, int flag) {
-    if (flag < 0) throw failure(Failure::no_step, fmt::format("{}: {}", call, flag_name(Library::flag_name(flag))));
+    if (flag < 0) give_up<Library>(call, flag, memory_.get(), y_.get(), form_.unknowns(), end_);
   }
 
-  [[nodiscard]] SolverError failure(Failure why, const std::string& library) {
-    double step = 0.0;
-    std::string details;
-    // Weights and errors exist once a step has been tried.
-    if (memory_ && Library::current_step(memory_.get(), &step) == 0 &&
-        Library::error_weights(memory_.get(), weights_.get()) == 0 &&
-        Library::local_errors(memory_.get(), errors_.get()) == 0) {
-      details = worst_components(system_.unknowns(), view(weights_.get()), view(errors_.get()));
-    }
-    return {why, end_, step, details, library};
-  }
+  struct SegmentBegin {
+    double xi = 0.0;
+    std::vector<double> state;  ///< complete
+  };
+  struct StepBegin {
+    NVector y;
+    std::vector<double> guess;  ///< first guess of complete states
+  };
 
-  Equations& system_;
-  GuardSet& guard_set_;
   OdeMethod method_;
-  Tolerances tolerances_, of_step_;
+  Tolerances tolerances_;
   ExplicitForm form_;
   Pending pending_;
-  RootList roots_;
+  RootFunctions roots_;
   double end_ = 0.0;
-  double segment_begin_ = 0.0;
-  std::vector<double> first_state_;  ///< complete state where this segment begins
-  std::vector<double> begin_guess_;  ///< first guess of complete states where the last step began
-  std::vector<double> first_guess_;
-  double start_end_ = 0.0;    ///< one round-off of xi beyond where the library has started
   double last_length_ = 0.0;  ///< length of the last step of this segment; 0 before the first
-  Statistics past_;
-  long for_jacobian_ = 0;  ///< evaluations of rates that the library does not count
+  Statistics past_;           ///< counts up to the last start, and those that the library does not keep
+  SegmentBegin segment_begin_;
 
   sundials::Context context_;  // first in, last out
-  NVector y_, begin_state_, atol_, weights_, errors_;
-  NVector rates_;        // last rates that the library has asked for
-  NVector first_rates_;  // rates at start_end_
-  Matrix matrix_;
-  LinearSolver linear_;
-  NonlinearSolver nonlinear_;
+  NVector y_;
+  StepBegin step_begin_;  ///< where the last step began
+  NVector between_;       ///< a state within the last step
+  ErrorWeights weights_;
+  DenseSolver newton_;         ///< of implicit methods with Newton's corrector
+  NonlinearSolver nonlinear_;  ///< of Adams' method
   std::optional<SundialsSensitivities<CvodesCalls>> carried_;
   std::unique_ptr<void, Deleter> memory_;
 };
@@ -521,7 +517,7 @@ void SundialsOde<ArkodeLibrary>::create() {
   const bool is_implicit = method_ == OdeMethod::arkode_dirk;
   memory_.reset(ARKStepCreate(is_implicit ? nullptr : right_hand_side, is_implicit ? right_hand_side : nullptr, 0.0,
                               y_.get(), context_));
-  if (!memory_) throw failure(Failure::set_up, "ARKStepCreate: no memory");
+  if (!memory_) throw SolverError(Failure::set_up, end_, 0.0, {}, "ARKStepCreate: no memory");
   check("ARKStepSetOrder", ARKStepSetOrder(memory_.get(), ArkodeLibrary::order));
   if (form_.has_corrections()) {
     check("ARKStepSetPostprocessStepFn", ARKStepSetPostprocessStepFn(memory_.get(), corrected));
