@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <optional>
 
 #include "engine/c_library.hpp"
 #include "engine/stepper.hpp"
@@ -96,116 +97,40 @@ class ErrorControl {
   double atol_ = 0.0, rtol_ = 0.0;
 };
 
-class GslStepper final : public Stepper {
+/// An end of a step, with the scaled state and rates there.
+struct StepEnd {
+  double xi = 0.0;
+  std::vector<double> z, rates;
+};
+
+/// Finds steps of BDF that have left the curve along which the rates lead. The library takes corrections for small if
+/// it uses the Jacobian of an earlier step that is far larger than the present one. Where d(rates)/dz exceeds 1/step,
+/// as before a fold, the implicit equation has no solution, or one that leads back.
+class BdfCheck {
  public:
-  GslStepper(GslMethod method, ScaledForm& form, const Tolerances& tolerances)
-      : form_(form),
-        jacobian_(form),
-        system_{rates, jacobian, form.size(), this},
-        driver_(make_driver(type_of(method), tolerances)),
-        reaching_(make_driver(gsl_odeiv2_step_rk8pd, tolerances)),
-        old_(form.size()),
-        now_(form.size()),
-        between_(form.size()),
-        old_rates_(form.size()),
-        rates_(form.size()) {
-    if (driver_->s->type == gsl_odeiv2_step_msbdf) {
-      by_z_.resize(form.size() * form.size());
-      for (auto* values : {&by_xi_, &excess_, &tolerated_}) values->resize(form.size());
-      permutation_.reset(gsl_permutation_alloc(form.size()));
-      if (!permutation_) throw std::bad_alloc();
-    }
-    // Without a limit the driver would never end where the rates jump: its steps become ever smaller.
-    gsl_odeiv2_driver_set_nmax(reaching_.get(), static_cast<unsigned long>(k_most_internal_steps));
+  explicit BdfCheck(std::size_t size)
+      : by_z_(size * size), by_xi_(size), excess_(size), tolerated_(size), permutation_(gsl_permutation_alloc(size)) {
+    if (!permutation_) throw std::bad_alloc();
   }
 
-  void begin(double xi, std::span<const double> z) override {
-    std::ranges::copy(z, now_.begin());
-    begin_ = end_ = xi;
-    are_rates_known_ = false;
-    step_ = std::min(k_first_step, 1.0 - xi);
-    gsl_odeiv2_driver_reset(driver_.get());
-  }
-
-  void correct(std::span<const double> z) override {
-    if (driver_->s->type == gsl_odeiv2_step_rk8pd) std::ranges::copy(z, now_.begin());
-  }
-
-  double step() override {
-    std::ranges::copy(now_, old_.begin());
-    begin_ = end_;
-    pending_.forget();
-    for (;;) {
-      double at = begin_;
-      const unsigned long rejected = driver_->e->failed_steps;
-      const int status =
-          gsl_odeiv2_evolve_apply(driver_->e, driver_->c, driver_->s, &system_, &at, 1.0, &step_, now_.data());
-      rejections += static_cast<long>(driver_->e->failed_steps - rejected);
-      pending_.rethrow();
-      // GSL itself halves a step in which the equations end. A step this short has reached their end; later steps
-      // would approach it without ever arriving.
-      const bool has_arrived = at - begin_ < least_progress(begin_) && pending_.domain_end();
-      // A step is accepted only if the equations hold at its end, however small its error.
-      const bool is_accepted = status == GSL_SUCCESS && at > begin_ && !has_arrived &&
-                               rates(at, now_.data(), rates_.data(), this) == GSL_SUCCESS && !leads_elsewhere(at);
-      pending_.rethrow();
-      if (is_accepted) {
-        end_ = at;
-        std::swap(old_rates_, rates_);
-        are_rates_known_ = true;
-        order = static_cast<int>(gsl_odeiv2_step_order(driver_->s));
-        return end_;
-      }
-      // The history of a multistep method may contain states from beyond the end of the equations.
-      std::ranges::copy(old_, now_.begin());
-      gsl_odeiv2_driver_reset(driver_.get());
-      step_ = 0.1 * std::min(step_, 1.0 - begin_);
-      ++rejections;
-      if (step_ >= least_progress(begin_)) continue;
-      if (pending_.domain_end()) throw *pending_.domain_end();
-      if (step_ < k_smallest_step * least_progress(begin_)) throw SolverError(Failure::no_step, begin_, step_, {});
-    }
-  }
-
-  void state_at(double xi, std::span<double> z) override {
-    if (xi == end_) {
-      std::ranges::copy(now_, z.begin());
-      return;
-    }
-    std::ranges::copy(old_, between_.begin());
-    double at = begin_;
-    reaching_->h = xi - begin_;
-    gsl_odeiv2_evolve_reset(reaching_->e);
-    gsl_odeiv2_step_reset(reaching_->s);
-    pending_.forget();
-    if (xi > begin_) {
-      const int status = gsl_odeiv2_driver_apply(reaching_.get(), &at, xi, between_.data());
-      pending_.rethrow();
-      if (status != GSL_SUCCESS && pending_.domain_end()) throw *pending_.domain_end();
-      if (status != GSL_SUCCESS) throw SolverError(Failure::no_step, at, 0.0, "a state within the step is not reached");
-    }
-    std::ranges::copy(between_, z.begin());
-  }
-
- private:
-  /// True if a step of BDF has left the curve along which the rates lead. The library takes corrections for small if it
-  /// uses the Jacobian of an earlier step that is far larger than the present one. Where d(rates)/dz exceeds 1/step, as
-  /// before a fold, the implicit equation has no solution, or one that leads back.
-  [[nodiscard]] bool leads_elsewhere(double end) {
-    if (by_z_.empty() || !are_rates_known_) return false;
-    const std::size_t size = now_.size();
-    const double length = end - begin_;
+  /// @param length    of the step; the end need not have its xi
+  /// @param control   gives the tolerances of the step
+  /// @param jacobian  (by_z, by_xi): puts both derivatives of the rates at the end there, and returns GSL's code
+  template <class Jacobian>
+  [[nodiscard]] bool leads_elsewhere(const StepEnd& begin, const StepEnd& end, double length,
+                                     gsl_odeiv2_control* control, Jacobian&& jacobian) {
+    const std::size_t size = excess_.size();
     bool is_doubtful = false;
     for (std::size_t k = 0; k < size; ++k) {
-      const double change = now_[k] - old_[k];
-      const auto [least, most] = std::minmax({length * old_rates_[k], length * rates_[k]});
+      const double change = end.z[k] - begin.z[k];
+      const auto [least, most] = std::minmax({length * begin.rates[k], length * end.rates[k]});
       const double slack = 0.5 * (most - least);
       excess_[k] = change - std::clamp(change, least - slack, most + slack);
-      gsl_odeiv2_control_errlevel(driver_->c, now_[k], rates_[k], length, k, &tolerated_[k]);
+      gsl_odeiv2_control_errlevel(control, end.z[k], end.rates[k], length, k, &tolerated_[k]);
       is_doubtful = is_doubtful || std::abs(excess_[k]) > k_doubtful * tolerated_[k];
     }
     if (!is_doubtful) return false;
-    if (jacobian(end, now_.data(), by_z_.data(), by_xi_.data(), this) != GSL_SUCCESS) return true;
+    if (jacobian(by_z_.data(), by_xi_.data()) != GSL_SUCCESS) return true;
     for (double& value : by_z_) value *= -length;
     for (std::size_t k = 0; k < size; ++k) by_z_[k * size + k] += 1.0;
     gsl_matrix_view matrix = gsl_matrix_view_array(by_z_.data(), size, size);
@@ -218,6 +143,105 @@ class GslStepper final : public Stepper {
       if (std::abs(excess_[k]) > k_wrong * tolerated_[k]) return true;
     }
     return false;
+  }
+
+ private:
+  std::vector<double> by_z_, by_xi_, excess_, tolerated_;
+  Handle<gsl_permutation*, gsl_permutation_free> permutation_;
+};
+
+class GslStepper final : public Stepper {
+ public:
+  GslStepper(GslMethod method, ScaledForm& form, const Tolerances& tolerances)
+      : form_(form),
+        jacobian_(form),
+        system_{rates, jacobian, form.size(), this},
+        driver_(make_driver(type_of(method), tolerances)),
+        reaching_(make_driver(gsl_odeiv2_step_rk8pd, tolerances)),
+        between_(form.size()) {
+    for (StepEnd* end : {&begin_, &end_}) {
+      end->z.resize(form.size());
+      end->rates.resize(form.size());
+    }
+    if (driver_->s->type == gsl_odeiv2_step_msbdf) bdf_check_.emplace(form.size());
+    // Without a limit the driver would never end where the rates jump: its steps become ever smaller.
+    gsl_odeiv2_driver_set_nmax(reaching_.get(), static_cast<unsigned long>(k_most_internal_steps));
+  }
+
+  void begin(double xi, std::span<const double> z) override {
+    std::ranges::copy(z, end_.z.begin());
+    begin_.xi = end_.xi = xi;
+    are_rates_known_ = false;
+    step_ = std::min(k_first_step, 1.0 - xi);
+    gsl_odeiv2_driver_reset(driver_.get());
+  }
+
+  void correct(std::span<const double> z) override {
+    if (driver_->s->type == gsl_odeiv2_step_rk8pd) std::ranges::copy(z, end_.z.begin());
+  }
+
+  double step() override {
+    begin_ = end_;
+    pending_.forget();
+    for (;;) {
+      double at = begin_.xi;
+      const unsigned long rejected = driver_->e->failed_steps;
+      const int status =
+          gsl_odeiv2_evolve_apply(driver_->e, driver_->c, driver_->s, &system_, &at, 1.0, &step_, end_.z.data());
+      rejections += static_cast<long>(driver_->e->failed_steps - rejected);
+      pending_.rethrow();
+      // GSL itself halves a step in which the equations end. A step this short has reached their end; later steps
+      // would approach it without ever arriving.
+      const bool has_arrived = at - begin_.xi < least_progress(begin_.xi) && pending_.domain_end();
+      // A step is accepted only if the equations hold at its end, however small its error.
+      const bool is_accepted = status == GSL_SUCCESS && at > begin_.xi && !has_arrived &&
+                               rates(at, end_.z.data(), end_.rates.data(), this) == GSL_SUCCESS && !leads_elsewhere(at);
+      pending_.rethrow();
+      if (is_accepted) {
+        end_.xi = at;
+        are_rates_known_ = true;
+        order = static_cast<int>(gsl_odeiv2_step_order(driver_->s));
+        return at;
+      }
+      // The history of a multistep method may contain states from beyond the end of the equations.
+      end_.z = begin_.z;
+      gsl_odeiv2_driver_reset(driver_.get());
+      step_ = 0.1 * std::min(step_, 1.0 - begin_.xi);
+      ++rejections;
+      if (step_ >= least_progress(begin_.xi)) continue;
+      if (pending_.domain_end()) throw *pending_.domain_end();
+      if (step_ < k_smallest_step * least_progress(begin_.xi))
+        throw SolverError(Failure::no_step, begin_.xi, step_, {});
+    }
+  }
+
+  void state_at(double xi, std::span<double> z) override {
+    if (xi == end_.xi) {
+      std::ranges::copy(end_.z, z.begin());
+      return;
+    }
+    std::ranges::copy(begin_.z, between_.begin());
+    double at = begin_.xi;
+    reaching_->h = xi - begin_.xi;
+    gsl_odeiv2_evolve_reset(reaching_->e);
+    gsl_odeiv2_step_reset(reaching_->s);
+    pending_.forget();
+    if (xi > begin_.xi) {
+      const int status = gsl_odeiv2_driver_apply(reaching_.get(), &at, xi, between_.data());
+      pending_.rethrow();
+      if (status != GSL_SUCCESS && pending_.domain_end()) throw *pending_.domain_end();
+      if (status != GSL_SUCCESS) throw SolverError(Failure::no_step, at, 0.0, "a state within the step is not reached");
+    }
+    std::ranges::copy(between_, z.begin());
+  }
+
+ private:
+  [[nodiscard]] bool leads_elsewhere(double end) {
+    const auto jacobian_at_end = [&](double* by_z, double* by_xi) {
+      return jacobian(end, end_.z.data(), by_z, by_xi, this);
+    };
+    return bdf_check_ && are_rates_known_ &&
+           bdf_check_->leads_elsewhere(begin_, end_, end - begin_.xi, driver_->c, jacobian_at_end);
   }
 
   [[nodiscard]] Driver make_driver(const gsl_odeiv2_step_type* type, const Tolerances& tolerances) {
@@ -261,12 +285,11 @@ class GslStepper final : public Stepper {
   Driver driver_;
   Driver reaching_;
   Pending pending_;
-  std::vector<double> old_, now_, between_;
-  std::vector<double> old_rates_, rates_;
+  StepEnd begin_, end_;  ///< of the last step
+  std::vector<double> between_;
   bool are_rates_known_ = false;  ///< at the beginning of the step
-  std::vector<double> by_z_, by_xi_, excess_, tolerated_;
-  Handle<gsl_permutation*, gsl_permutation_free> permutation_;
-  double begin_ = 0.0, end_ = 0.0, step_ = k_first_step;
+  std::optional<BdfCheck> bdf_check_;
+  double step_ = k_first_step;
 };
 
 }  // namespace
