@@ -208,8 +208,8 @@ std::string doubt_displacement(const Calibration& calibration, const Calibration
   std::string doubt;
   for (const Suspicion& suspicion : suspicions) {
     const TrialFit trial = fit(suspicion.changed);
-    const double left = (1.0 - trial.explained) / (1.0 - result.explained);          // share of the cost
-    const double difference = -static_cast<double>(result.points) * std::log(left);  // of the BIC, if that is noise
+    const double left = (1.0 - trial.explained) / (1.0 - result.goodness.explained);  // share of the cost
+    const double difference = -static_cast<double>(result.points) * std::log(left);   // of the BIC, if that is noise
     const bool is_clear = trial.is_noise ? difference > k_very_strong : left < k_clearly_less;
     if (!is_clear || !(left < least)) continue;
     least = left;
@@ -223,12 +223,12 @@ std::string doubt_displacement(const Calibration& calibration, const Calibration
 std::vector<std::string> warnings_of(const Calibration& calibration, const CalibrationResult& result,
                                      const FitTrial& fit) {
   if (result.uncertainty.degrees_of_freedom == 0) return {};
-  if (result.explained >= k_least_explained) {
+  if (result.goodness.explained >= k_least_explained) {
     std::string doubt = doubt_displacement(calibration, result, fit);
     return doubt.empty() ? std::vector<std::string>() : std::vector{std::move(doubt)};
   }
   // A robust loss hardly tells the constant from a fit where its scale is as small as the noise.
-  if (calibration.loss.kind != Loss::linear && result.r_squared >= k_least_explained) return {};
+  if (calibration.loss.kind != Loss::linear && result.goodness.r_squared >= k_least_explained) return {};
   if (is_constant(calibration)) {
     return {"y is the same in every row: the data say nothing of the parameters; expected the column that changes"};
   }
@@ -236,8 +236,8 @@ std::vector<std::string> warnings_of(const Calibration& calibration, const Calib
   const bool never_touches = std::ranges::all_of(rows, [&result](std::size_t row) { return result.fit.y[row] == 0.0; });
   std::string warning = never_touches ? "no datum touches the particle: the fit is zero in every row"
                                       : fmt::format("the fit is {}: {} = {:.4g}",
-                                                    result.explained < 0.0 ? "worse than a constant" : "bad",
-                                                    measure_of(calibration), result.explained);
+                                                    result.goodness.explained < 0.0 ? "worse than a constant" : "bad",
+                                                    measure_of(calibration), result.goodness.explained);
   const std::string cause = likely_cause(calibration, fit);
   warning +=
       cause.empty()

@@ -178,7 +178,10 @@ class Fit {
     for (const Response& response : responses_) {
       result.program_steps += response.replay().scenario().loading.steps.size();
     }
-    add_statistics(result);
+    result.goodness = goodness_of(result.solution, result.fit.y);
+    if (!data_fit().is_exact(result.solution)) {
+      result.residual_tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
+    }
     result.notes = notes_of(calibration_, result);
     std::ranges::copy(intervals.notes(), std::back_inserter(result.notes));
     return result;
@@ -316,33 +319,32 @@ class Fit {
     return curve;
   }
 
-  void add_statistics(CalibrationResult& result) const {
+  [[nodiscard]] GoodnessOfFit goodness_of(const LeastSquaresSolution& solution, std::span<const double> fit) const {
+    GoodnessOfFit goodness;
     const std::vector<double>& y = calibration_.y.values;
     double mean = 0.0;
     for (const std::size_t row : rows_) mean += y[row] / static_cast<double>(rows_.size());
     double about_mean = 0.0;
     double about_fit = 0.0;
     for (const std::size_t row : rows_) {
-      const double residual = y[row] - result.fit.y[row];
+      const double residual = y[row] - fit[row];
       about_mean += (y[row] - mean) * (y[row] - mean);
       about_fit += residual * residual;
-      if (std::abs(residual) <= result.largest) continue;
-      result.largest = std::abs(residual);
-      result.largest_at = row;
+      if (std::abs(residual) <= goodness.largest) continue;
+      goodness.largest = std::abs(residual);
+      goodness.largest_at = row;
     }
-    for (std::size_t i = 0; i < result.solution.residuals.size(); ++i) {
+    for (std::size_t i = 0; i < solution.residuals.size(); ++i) {
       const bool is_of_prior = i >= rows_.size() && i < rows_.size() + priors_.size();
-      if (!is_of_prior) result.sum_of_squares += std::pow(result.solution.residuals[i], 2);
+      if (!is_of_prior) goodness.sum_of_squares += std::pow(solution.residuals[i], 2);
     }
-    result.noise_growth = noise_.shared_errors().log_determinant();
+    goodness.noise_growth = noise_.shared_errors().log_determinant();
     for (const std::size_t row : rows_)
-      result.noise_growth += 2.0 * std::log(calibration_.weights[row] / noise_.weights()[row]);
-    result.rms = std::sqrt(about_fit / static_cast<double>(rows_.size()));
-    result.r_squared = is_constant(calibration_) ? k_nan : 1.0 - about_fit / about_mean;
-    result.explained = explained_share(calibration_, noise_.weights(), data_fit().cost(result.solution));
-    if (!data_fit().is_exact(result.solution)) {
-      result.residual_tests = test_residuals(std::span(result.solution.residuals).first(rows_.size()));
-    }
+      goodness.noise_growth += 2.0 * std::log(calibration_.weights[row] / noise_.weights()[row]);
+    goodness.rms = std::sqrt(about_fit / static_cast<double>(rows_.size()));
+    goodness.r_squared = is_constant(calibration_) ? k_nan : 1.0 - about_fit / about_mean;
+    goodness.explained = explained_share(calibration_, noise_.weights(), data_fit().cost(solution));
+    return goodness;
   }
 
   const Calibration& calibration_;

@@ -146,6 +146,17 @@ struct FittedCurve {
   std::vector<double> band;  ///< half the band's width; nan if there is none
 };
 
+/// How closely a fit follows the data.
+struct GoodnessOfFit {
+  double sum_of_squares = 0.0;  ///< of weighted residuals; chi^2 if the noise is known
+  double noise_growth = 0.0;    ///< ln det of the covariance of noise that follows from the fit, less that given
+  double rms = 0.0;             ///< of residuals [SI of y], over all rows that count
+  double largest = 0.0;         ///< largest magnitude of a residual
+  std::size_t largest_at = 0;   ///< row of the largest residual
+  double r_squared = 0.0;       ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted; nan if y is constant
+  double explained = 0.0;       ///< 1 - cost / (cost of the best constant); nan if y is constant
+};
+
 struct CalibrationResult {
   LeastSquaresSolution solution;
   Uncertainty uncertainty;
@@ -153,20 +164,14 @@ struct CalibrationResult {
   IntervalMethod method = IntervalMethod::covariance;  ///< method by which the intervals were found
   std::string method_reason;                           ///< why this method: a clause
   std::optional<ResidualTests> residual_tests;         ///< none for few rows, and for an exact fit
-  ModelFits procedures;               ///< fits by the model's own procedures, and this fit by their measures; empty if
-                                      ///< the model has none
-  FittedCurve fit;                    ///< at the rows of the data
-  std::vector<double> weights;        ///< of all rows; those of noise in proportion to y follow from the fit
-  std::vector<FittedCurve> curves;    ///< one for each measured curve, with points in between
-  std::size_t points = 0;             ///< rows that count
-  std::size_t program_steps = 0;      ///< steps of the loading made from the data
-  double sum_of_squares = 0.0;        ///< of weighted residuals; chi^2 if the noise is known
-  double noise_growth = 0.0;          ///< ln det of the covariance of noise that follows from the fit, less that given
-  double rms = 0.0;                   ///< of residuals [SI of y], over all rows that count
-  double largest = 0.0;               ///< largest magnitude of a residual
-  std::size_t largest_at = 0;         ///< row of the largest residual
-  double r_squared = 0.0;             ///< 1 - sum (y - fit)^2 / sum (y - mean)^2, unweighted; nan if y is constant
-  double explained = 0.0;             ///< 1 - cost / (cost of the best constant); nan if y is constant
+  ModelFits procedures;             ///< fits by the model's own procedures, and this fit by their measures; empty if
+                                    ///< the model has none
+  FittedCurve fit;                  ///< at the rows of the data
+  std::vector<double> weights;      ///< of all rows; those of noise in proportion to y follow from the fit
+  std::vector<FittedCurve> curves;  ///< one for each measured curve, with points in between
+  std::size_t points = 0;           ///< rows that count
+  std::size_t program_steps = 0;    ///< steps of the loading made from the data
+  GoodnessOfFit goodness;
   std::vector<double> particle;       ///< displacement at the particle in every row; empty if the machine adds none
   std::vector<std::string> notes;     ///< notes for the user
   std::vector<std::string> warnings;  ///< why the fit is not to be trusted, with the likely cause

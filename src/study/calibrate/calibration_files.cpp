@@ -137,12 +137,12 @@ Json statistics_json(const Calibration& calibration, const CalibrationResult& re
           {"t_quantile", uncertainty.t_quantile},
           {"standard_deviation", uncertainty.standard_deviation},
           {"cost", solution.cost},
-          {"sum_of_squares", result.sum_of_squares},
-          {"rms", result.rms},
-          {"largest", result.largest},
-          {"largest_in_line", calibration.lines[result.largest_at]},
-          {"r_squared", result.r_squared},
-          {"explained", result.explained}};
+          {"sum_of_squares", result.goodness.sum_of_squares},
+          {"rms", result.goodness.rms},
+          {"largest", result.goodness.largest},
+          {"largest_in_line", calibration.lines[result.goodness.largest_at]},
+          {"r_squared", result.goodness.r_squared},
+          {"explained", result.goodness.explained}};
 }
 
 /// How the fit was made.

@@ -84,16 +84,17 @@ std::vector<TextRow> procedure_rows(const ModelFits& procedures) {
 std::vector<TextRow> residual_rows(const Calibration& calibration, const CalibrationResult& result) {
   const MeasuredQuantity& y = calibration.y;
   const auto in_y = [&y](double value) { return with_unit(value / y.unit_factor, y.unit == "-" ? "" : y.unit); };
-  const fs::path worst = calibration.curve_of(result.largest_at).file;
+  const fs::path worst = calibration.curve_of(result.goodness.largest_at).file;
   const std::string of_file = calibration.curves.size() > 1 ? worst.filename().string() + ", " : "";
-  std::vector<TextRow> rows{{"points", fmt::format("{}", result.points)},
-                            {"degrees of freedom", fmt::format("{}", result.uncertainty.degrees_of_freedom)},
-                            {calibration.knows_noise() ? "chi^2 (noise known)" : "sum of squares (weighted)",
-                             shown_number(result.sum_of_squares)},
-                            {"rms residual", in_y(result.rms)},
-                            {"largest residual", fmt::format("{} ({}line {})", in_y(result.largest), of_file,
-                                                             calibration.lines[result.largest_at])},
-                            {"R^2", std::isfinite(result.r_squared) ? fmt::format("{:.8f}", result.r_squared) : "-"}};
+  std::vector<TextRow> rows{
+      {"points", fmt::format("{}", result.points)},
+      {"degrees of freedom", fmt::format("{}", result.uncertainty.degrees_of_freedom)},
+      {calibration.knows_noise() ? "chi^2 (noise known)" : "sum of squares (weighted)",
+       shown_number(result.goodness.sum_of_squares)},
+      {"rms residual", in_y(result.goodness.rms)},
+      {"largest residual", fmt::format("{} ({}line {})", in_y(result.goodness.largest), of_file,
+                                       calibration.lines[result.goodness.largest_at])},
+      {"R^2", std::isfinite(result.goodness.r_squared) ? fmt::format("{:.8f}", result.goodness.r_squared) : "-"}};
   if (calibration.loss.kind != Loss::linear) rows.push_back({"cost (with loss)", shown_number(result.solution.cost)});
   if (result.residual_tests) {
     const ResidualTests& tests = *result.residual_tests;

@@ -31,8 +31,8 @@ void note_chi_squared(const CalibrationResult& result, Notes& notes) {
   const auto degrees = static_cast<double>(result.uncertainty.degrees_of_freedom);
   if (degrees == 0.0) return;
   const boost::math::chi_squared distribution(degrees);
-  const double above = boost::math::cdf(boost::math::complement(distribution, result.sum_of_squares));
-  const double reduced = result.sum_of_squares / degrees;
+  const double above = boost::math::cdf(boost::math::complement(distribution, result.goodness.sum_of_squares));
+  const double reduced = result.goodness.sum_of_squares / degrees;
   if (above < k_improbable) {
     notes.push_back(
         fmt::format("chi^2 over degrees of freedom is {:.3g}: the residuals are larger than the noise given, by the "
@@ -150,7 +150,7 @@ void note_missed_turns(const Calibration& calibration, const CalibrationResult& 
                        std::span<const double> x, const std::vector<Turn>& turns, Notes& notes) {
   if (result.uncertainty.degrees_of_freedom == 0) return;
   const double deviation =
-      std::sqrt(result.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom));
+      std::sqrt(result.goodness.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom));
   const bool has_noise = noise_in(x) > 0.0;  // rows then lie on both sides of the turn
   double largest = k_far_turn * deviation;
   std::string note;

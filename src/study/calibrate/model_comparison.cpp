@@ -104,8 +104,8 @@ Table table_of(std::span<const Calibration> calibrations, std::span<const Calibr
                                   static_cast<double>(k),
                                   static_cast<double>(fit.parameters),
                                   static_cast<double>(results[k].points),
-                                  results[k].rms,
-                                  results[k].r_squared,
+                                  results[k].goodness.rms,
+                                  results[k].goodness.r_squared,
                                   fit.aic,
                                   fit.bic,
                                   fit.prediction};
@@ -159,11 +159,11 @@ ModelComparison compare_models(std::span<const Calibration> calibrations, std::s
   for (std::size_t k = 0; k < calibrations.size(); ++k) {
     const Calibration& calibration = calibrations[k];
     const auto n = static_cast<double>(results[k].points);
-    const double squares = results[k].sum_of_squares;
+    const double squares = results[k].goodness.sum_of_squares;
     const bool is_known = calibration.knows_noise();
     // If the noise is estimated, its size is a parameter, too.
     const auto parameters = static_cast<double>(calibration.free.size()) + (is_known ? 0.0 : 1.0);
-    const double misfit = is_known ? squares + results[k].noise_growth : n * std::log(squares / n);
+    const double misfit = is_known ? squares + results[k].goodness.noise_growth : n * std::log(squares / n);
     double of_predictions = 0.0;
     for (const Part& part : parts.list) {
       of_predictions += squares_of_prediction(calibration, part).value_or(k_nan);
@@ -187,9 +187,9 @@ std::string comparison_text(std::span<const Calibration> calibrations, std::span
   for (const std::size_t k : order) {
     const RankedFit& fit = comparison.fits[k];
     rows.push_back({calibrations[k].name, calibrations[k].scenario.model, fmt::format("{}", fit.parameters),
-                    in_y(results[k].rms, calibrations[k]), fmt::format("{:.6f}", results[k].r_squared),
-                    fmt::format("+{:.1f}", fit.aic - least_aic), fmt::format("+{:.1f}", fit.bic - least_bic),
-                    in_y(fit.prediction, calibrations[k])});
+                    in_y(results[k].goodness.rms, calibrations[k]),
+                    fmt::format("{:.6f}", results[k].goodness.r_squared), fmt::format("+{:.1f}", fit.aic - least_aic),
+                    fmt::format("+{:.1f}", fit.bic - least_bic), in_y(fit.prediction, calibrations[k])});
   }
   std::string text = aligned(rows) + '\n';
   if (comparison.parts > 0) {

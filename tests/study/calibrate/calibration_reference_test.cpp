@@ -83,7 +83,8 @@ TEST_F(HardeningCalibration, MeetsFitsComputedElsewhere) {
       EXPECT_LE(relative_error(error(0), expected.strength_error), 1e-6) << name << " " << weights;
       EXPECT_LE(relative_error(error(1), expected.exponent_error), 1e-6) << name << " " << weights;
       EXPECT_NEAR(result.uncertainty.correlation(0, 1), expected.correlation, 1e-7) << name << " " << weights;
-      EXPECT_LE(relative_error(result.sum_of_squares, expected.sum_of_squares), 1e-7) << name << " " << weights;
+      EXPECT_LE(relative_error(result.goodness.sum_of_squares, expected.sum_of_squares), 1e-7)
+          << name << " " << weights;
     }
   }
 }
@@ -149,7 +150,7 @@ TEST(ReadyCalibration, IntervalOfPoissonsRatioEndsWhereFitsWithItHeldAreThatMuch
   for (const double end : {interval.lower, interval.upper}) {
     const CalibrationResult held =
         fit_compression(folder, fmt::format("set = [\"material.poisson_ratio={:.17g}\"]", end), "");
-    EXPECT_NEAR((held.sum_of_squares / result.sum_of_squares - 1.0) * n, t * t, 0.03 * t * t) << end;
+    EXPECT_NEAR((held.goodness.sum_of_squares / result.goodness.sum_of_squares - 1.0) * n, t * t, 0.03 * t * t) << end;
   }
 }
 
@@ -239,7 +240,7 @@ TEST_F(CelCalibration, BringsBackTheMaterialAsNearAsTheLawIsToFiniteElements) {
   EXPECT_NEAR(result.solution.parameters[0], 1.053 * k_modulus, 0.005 * k_modulus);
   EXPECT_NEAR(result.solution.parameters[1], 1.013 * k_yield_stress, 0.005 * k_yield_stress);
   // Residuals are over the largest force.
-  EXPECT_LT(std::sqrt(result.sum_of_squares / static_cast<double>(calibration.y.values.size())), 0.015);
+  EXPECT_LT(std::sqrt(result.goodness.sum_of_squares / static_cast<double>(calibration.y.values.size())), 0.015);
 }
 
 /// Numbers after a word of a header line, up to a semicolon.
@@ -271,7 +272,7 @@ TEST(PackingCalibration, OfFourCurvesTogetherMeetsTheFitComputedElsewhere) {
   }
   EXPECT_NEAR(result.uncertainty.correlation(0, 2), 0.987, 5e-4);
   // s = sqrt(sum/(n - p)) is what the header calls rms.
-  EXPECT_NEAR(std::sqrt(result.sum_of_squares / 140.0), estimates[4], 1e-10);
+  EXPECT_NEAR(std::sqrt(result.goodness.sum_of_squares / 140.0), estimates[4], 1e-10);
   const auto tells = [&result](const std::string& text) {
     return std::ranges::any_of(result.notes,
                                [&](const std::string& note) { return note.find(text) != std::string::npos; });

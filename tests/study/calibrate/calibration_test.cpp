@@ -192,8 +192,8 @@ TEST_F(CalibrationTest, FindsTheParametersOfExactDataWithUnloadingAndReloading) 
   EXPECT_NEAR(result.solution.parameters[1] / 3.1e7, 1.0, 1e-9);
   EXPECT_TRUE(result.solution.has_converged);
   // No interpolation: the model is evaluated at each datum.
-  EXPECT_LT(result.largest, 1e-9 * 1e4);
-  EXPECT_GT(result.r_squared, 1.0 - 1e-15);
+  EXPECT_LT(result.goodness.largest, 1e-9 * 1e4);
+  EXPECT_GT(result.goodness.r_squared, 1.0 - 1e-15);
 }
 
 /// Rows at equal times of a load to 0.2 R0 and an unloading at the same speed. The last row before the turn lies a
@@ -1312,7 +1312,7 @@ TEST_F(CalibrationTest, FitsSeveralCurvesTogetherEachWithItsOverrides) {
   EXPECT_EQ(calibration.counted(), 5U);
   const CalibrationResult result = calibrate(calibration);
   EXPECT_NEAR(result.solution.parameters[0] / 70e9, 1.0, 1e-9);
-  EXPECT_LT(result.sum_of_squares, 1e-18);
+  EXPECT_LT(result.goodness.sum_of_squares, 1e-18);
   EXPECT_EQ(result.fit.y.size(), 5U);
   EXPECT_EQ(result.curves.size(), 2U);
   EXPECT_EQ(result.program_steps, 3U);  // the second curve turns

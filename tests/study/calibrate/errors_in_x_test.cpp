@@ -152,12 +152,12 @@ TEST_F(HertzWithNoise, RefusesALossWhoseErrorsOfTurnsAreNotThoseOfLeastSquares) 
 TEST_F(HertzWithNoise, CountsItsOwnCovarianceWhereModelsAreCompared) {
   std::vector<double> x = loading();
   for (int k = 1; k <= 150; ++k) x.push_back(1e-4 - 5e-7 * k);
-  EXPECT_EQ(fit(x, R"({ absolute = "4 N" })").noise_growth, 0.0);
+  EXPECT_EQ(fit(x, R"({ absolute = "4 N" })").goodness.noise_growth, 0.0);
   const CalibrationResult result = fit(x, R"({ absolute = "4 N", x = "0.9 um" })");
   double of_rows = 0.0;
   for (const double weight : result.weights) of_rows -= 2.0 * std::log(4.0 * weight);
   EXPECT_GT(of_rows, 0.0);
-  EXPECT_GE(result.noise_growth, of_rows) << "the turn adds to it";
+  EXPECT_GE(result.goodness.noise_growth, of_rows) << "the turn adds to it";
 }
 
 /// A granule that is pressed by a program, with noise of x of 0.2 um and of y of 0.15 N.
@@ -234,7 +234,7 @@ TEST_P(GranuleWithNoiseOfX, HasErrorsAsLargeAsTheScatter) {
   double squares_without = 0.0;  // where noise of x is not given: of the modulus
   for (unsigned seed = 1; seed <= k_sets; ++seed) {
     const CalibrationResult result = fit(seed, ", x = \"0.2 um\"", "covariance");
-    chi_squared += result.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom) / k_sets;
+    chi_squared += result.goodness.sum_of_squares / static_cast<double>(result.uncertainty.degrees_of_freedom) / k_sets;
     for (std::size_t k = 0; k < 2; ++k) {
       const double deviation = result.solution.parameters[k] - k_truth[k];
       squares[k] += std::pow(deviation / result.uncertainty.standard_error(k), 2) / k_sets;

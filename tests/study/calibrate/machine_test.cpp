@@ -766,7 +766,7 @@ TEST_F(MachineCalibration, DoubtsTheDisplacementOfTwoWallsAndOfHalfAWall) {
         std::pair(0.5, "half of that of a wall: with scale = 2 in x, they are 0.61 times as large, and noise")}) {
     write_text(folder() / "d.csv", rows_times(read_plain(k_uniaxial), factor));
     const CalibrationResult result = calibrate(read_plain("d.csv"));
-    EXPECT_GT(result.explained, k_least_explained);
+    EXPECT_GT(result.goodness.explained, k_least_explained);
     ASSERT_EQ(result.warnings.size(), 1U) << factor;
     EXPECT_TRUE(result.warnings[0].starts_with("the residuals are not noise; likely cause: the displacement, "));
     EXPECT_NE(result.warnings[0].find(cause), std::string::npos) << result.warnings[0];
@@ -819,8 +819,8 @@ TEST_F(MachineCalibration, AnOutlierThatALossForgetsMakesNoBadFit) {
   write_text(folder() / "d.csv", data);
   write_text(folder() / "h.toml", std::string(k_hertz) + "[fit]\nloss = \"cauchy\"\nloss_scale = 0.001\n");
   const CalibrationResult result = calibrate(read_calibration(folder() / "h.toml"));
-  EXPECT_LT(result.r_squared, k_least_explained);
-  EXPECT_GT(result.explained, k_least_explained);
+  EXPECT_LT(result.goodness.r_squared, k_least_explained);
+  EXPECT_GT(result.goodness.explained, k_least_explained);
   EXPECT_TRUE(result.warnings.empty());
 }
 
@@ -828,8 +828,8 @@ TEST_F(MachineCalibration, ALossWhoseScaleIsThatOfTheNoiseMakesNoBadFit) {
   write_hertz(folder());
   write_text(folder() / "h.toml", std::string(k_hertz) + "[fit]\nloss = \"cauchy\"\nloss_scale = 1e-5\n");
   const CalibrationResult result = calibrate(read_calibration(folder() / "h.toml"));
-  EXPECT_GT(result.r_squared, 0.99);
-  EXPECT_LT(result.explained, k_least_explained);
+  EXPECT_GT(result.goodness.r_squared, 0.99);
+  EXPECT_LT(result.goodness.explained, k_least_explained);
   EXPECT_TRUE(result.warnings.empty());
 }
 

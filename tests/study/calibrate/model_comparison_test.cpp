@@ -99,7 +99,7 @@ TEST_F(ModelComparisonTest, CriteriaChargeAParameterThatTheDataDoNotAskFor) {
   const auto results = fit(calibrations);
   const ModelComparison found = compare_models(calibrations, results);
   const auto n = static_cast<double>(data_.size());
-  const double gain = n * std::log(results[0].sum_of_squares / results[1].sum_of_squares);
+  const double gain = n * std::log(results[0].goodness.sum_of_squares / results[1].goodness.sum_of_squares);
   EXPECT_GT(gain, 0.0);
   EXPECT_NEAR(found.fits[1].aic - found.fits[0].aic, 2.0 - gain, 1e-9);
   EXPECT_NEAR(found.fits[1].bic - found.fits[0].bic, std::log(n) - gain, 1e-9);
@@ -123,8 +123,9 @@ TEST_F(ModelComparisonTest, OfKnownNoiseTheCriteriaAreChiSquaredAndTheCharge) {
   const auto calibrations = read({k_alone}, 1.0, "noise = { absolute = \"0.5 N\" }");
   const auto results = fit(calibrations);
   const ModelComparison found = compare_models(calibrations, results);
-  EXPECT_NEAR(found.fits[0].aic, results[0].sum_of_squares + 2.0, 1e-9);
-  EXPECT_NEAR(found.fits[0].bic, results[0].sum_of_squares + std::log(static_cast<double>(data_.size())), 1e-9);
+  EXPECT_NEAR(found.fits[0].aic, results[0].goodness.sum_of_squares + 2.0, 1e-9);
+  EXPECT_NEAR(found.fits[0].bic, results[0].goodness.sum_of_squares + std::log(static_cast<double>(data_.size())),
+              1e-9);
 }
 
 TEST_F(ModelComparisonTest, TheTrueLawPredictsACycleThatItWasNotFittedTo) {

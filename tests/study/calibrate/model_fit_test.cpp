@@ -95,8 +95,8 @@ TEST_F(CompressibleCalibration, MeetsTheStoredFits) {
     const std::vector<double> f = table.column("F_over_pi_R0^2_sigma_y0");
     double area = 0.0;
     for (std::size_t i = 1; i < d.size(); ++i) area += 0.5 * (f[i] + f[i - 1]) * (d[i] - d[i - 1]);
-    const double integral =
-        result.sum_of_squares * std::pow(*std::ranges::max_element(f), 2) * d.back() / static_cast<double>(d.size());
+    const double integral = result.goodness.sum_of_squares * std::pow(*std::ranges::max_element(f), 2) * d.back() /
+                            static_cast<double>(d.size());
     EXPECT_LE(relative_error(std::sqrt(integral) / area, result.procedures.fits[2].area_error), 1e-10) << file;
     for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(result.uncertainty.standard_error(k))) << file;
   }
