@@ -26,8 +26,8 @@ using Style = ChartSeries::Style;
 
 constexpr double k_line_width = 1.8;
 constexpr unsigned k_shade = 0xECECECu;  ///< colour beyond the range of a law
-constexpr double k_text_line_cm = 0.38;
-constexpr double k_text_size = 9.0;  // [pt], unless a line is too long for it
+constexpr double k_text_line = 0.042;    // [cm/pt], distance of lines of text over its size
+constexpr double k_text_size = 9.0;      // [pt], unless a line is too long for it
 constexpr double k_text_margin_cm = 0.5;
 constexpr double k_a4 = 1.4142;  ///< height over width
 constexpr std::string_view k_floor_legend = "at the lower end of the axis, or below";
@@ -422,29 +422,29 @@ class Looks {
   return text;
 }
 
-[[nodiscard]] double height_of(const std::vector<std::string>& lines) {
-  return lines.empty() ? 0.0 : k_text_margin_cm + k_text_line_cm * static_cast<double>(lines.size());
+[[nodiscard]] double height_of(const std::vector<std::string>& lines, double text_size) {
+  return lines.empty() ? 0.0 : k_text_margin_cm + k_text_line * text_size * static_cast<double>(lines.size());
 }
 
 /// Makes room for the lines of text above the panels and below the legend.
-void make_room(const Chart& chart, Layout& layout) {
+void make_room(const Chart& chart, double text_size, Layout& layout) {
   if (chart.head.empty() && chart.foot.empty()) return;
-  const double needed = layout.height + height_of(chart.head) + height_of(chart.foot);
+  const double needed = layout.height + height_of(chart.head, text_size) + height_of(chart.foot, text_size);
   const double height = std::max(needed, k_a4 * layout.width);
-  const double rise = height - height_of(chart.head) - layout.height;
+  const double rise = height - height_of(chart.head, text_size) - layout.height;
   layout.height = height;
   layout.legend.bottom += rise;
   for (Panel& panel : layout.panels) panel.axes.bottom += rise;
 }
 
 /// Size [pt] in which the longest line of text fits the page.
-[[nodiscard]] double text_size(const Chart& chart, const Layout& layout) {
+[[nodiscard]] double text_size(const Chart& chart, double width) {
   constexpr double k_letter_cm = 0.61 * 2.54 / 72.0;  // width of a monospaced letter for each point of its size
   std::size_t longest = 1;
   for (const auto* lines : {&chart.head, &chart.foot}) {
     for (const std::string& line : *lines) longest = std::max(longest, width_of(line));
   }
-  const double fitting = (layout.width - 2.0 * k_text_margin_cm) / (k_letter_cm * static_cast<double>(longest));
+  const double fitting = (width - 2.0 * k_text_margin_cm) / (k_letter_cm * static_cast<double>(longest));
   return std::min(k_text_size, fitting);
 }
 
@@ -455,7 +455,7 @@ void make_room(const Chart& chart, Layout& layout) {
   for (std::size_t k = 0; k < lines.size(); ++k) {
     text += fmt::format("set label {} {} at screen {:.4f}, {:.4f} left noenhanced font 'Monospace,{:.2f}'\n", k + 10,
                         gnuplot_string(lines[k]), k_text_margin_cm / layout.width,
-                        (top - k_text_line_cm * (static_cast<double>(k) + 0.5)) / layout.height, size);
+                        (top - k_text_line * size * (static_cast<double>(k) + 0.5)) / layout.height, size);
   }
   return text.empty() ? text : "unset key; unset label\n" + text + "plot [0:1] [0:1] NaN\n";
 }
@@ -491,7 +491,8 @@ std::string chart_script(const Chart& chart, Format format, const std::string& f
   const Looks looks(chart);
   const auto rows = looks.legend_rows(chart);
   Layout layout = layout_of(chart.panels.size(), rows);
-  make_room(chart, layout);
+  const double size = text_size(chart, layout.width);
+  make_room(chart, size, layout);
 
   std::string text = page_head(format, layout, figure_name, data_name);
   for (std::size_t k = 0; k < chart.panels.size(); ++k) {
@@ -505,7 +506,6 @@ std::string chart_script(const Chart& chart, Format format, const std::string& f
     text += plots_of(panel, k, axes.y, looks);
   }
   text += "unset logscale; unset object\n" + legend_text(rows, layout);
-  const double size = text_size(chart, layout);
   text += lines_text(chart.head, size, layout.height - k_text_margin_cm, layout);
   const double lines = static_cast<double>(line_count(rows, layout.legend.width));
   text += lines_text(chart.foot, size, layout.legend.top() - k_legend_line_cm * lines - k_text_margin_cm, layout);

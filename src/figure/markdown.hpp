@@ -12,7 +12,7 @@ namespace monograin {
 using MarkdownRow = std::vector<std::string>;
 
 /// Appends a table with aligned columns: words to the left, numbers to the right.
-/// @param rows  the headings, then rows of as many cells
+/// @param rows  the headings, then rows of no more cells
 void append_markdown(std::string& text, const std::vector<MarkdownRow>& rows);
 
 }  // namespace monograin

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Bound = LeastSquaresSolution::Bound;
+
+constexpr std::size_t k_line_length = 82;  // of a report's page
 
 /// A number to the place of the second digit of its error; to six digits without one.
 std::string rounded(double value, double error) {
@@ -133,6 +136,12 @@ std::vector<TitledTable> tables_of(const Calibration& calibration, const Calibra
   return tables;
 }
 
+std::string tables_text(const Calibration& calibration, const CalibrationResult& result) {
+  std::string text;
+  for (const TitledTable& table : tables_of(calibration, result)) text += aligned(table.rows) + '\n';
+  return text;
+}
+
 std::string intervals_line(const CalibrationResult& result) {
   if (!result.has_intervals()) return {};
   return fmt::format("intervals: {} ({})\n", calibration::k_intervals[static_cast<std::size_t>(result.method)],
@@ -165,8 +174,6 @@ std::vector<std::string> data_lines(const Calibration& calibration) {
   return lines;
 }
 
-constexpr std::size_t k_line_length = 82;  // of a report's page
-
 void append_wrapped(std::vector<std::string>& lines, std::string_view text) {
   std::ranges::move(lines_of(text, k_line_length), std::back_inserter(lines));
 }
@@ -192,8 +199,14 @@ void append_lines(std::vector<std::string>& lines, std::string_view text) {
 }  // namespace
 
 std::vector<TextRow> correlation_rows(const std::vector<FreeParameter>& free, const Uncertainty& uncertainty) {
+  // Headings of a wide table leave out the tables of the keys.
+  const std::size_t width = std::accumulate(free.begin(), free.end(), std::size_t{25},
+                                            [](auto sum, const auto& one) { return sum + one.key.path.size() + 2; });
   std::vector<TextRow> rows{{"correlation"}};
-  for (const FreeParameter& parameter : free) rows.front().push_back(parameter.key.path);
+  for (const FreeParameter& parameter : free) {
+    const std::string& path = parameter.key.path;
+    rows.front().push_back(width > k_line_length ? path.substr(path.rfind('.') + 1) : path);
+  }
   for (std::size_t i = 0; i < free.size(); ++i) {
     rows.push_back({free[i].key.path});
     for (std::size_t j = 0; j < free.size(); ++j) {
@@ -219,9 +232,7 @@ std::string with_unit(double value, const std::string& unit, int digits) {
 }
 
 std::string calibration_text(const Calibration& calibration, const CalibrationResult& result) {
-  std::string text;
-  for (const TitledTable& table : tables_of(calibration, result)) text += aligned(table.rows) + '\n';
-  return text + intervals_line(result);
+  return tables_text(calibration, result) + intervals_line(result);
 }
 
 ReportLines report_lines(const Calibration& calibration, const CalibrationResult& result) {
@@ -232,7 +243,8 @@ ReportLines report_lines(const Calibration& calibration, const CalibrationResult
   std::vector<std::string> data = data_lines(calibration);
   for (std::string& line : data) std::erase(line, '`');
   append_list(lines.head, "Data", data);
-  append_lines(lines.foot, calibration_text(calibration, result));
+  append_lines(lines.foot, tables_text(calibration, result));
+  append_wrapped(lines.foot, intervals_line(result));
   append_list(lines.foot, "Warnings", result.warnings);
   append_list(lines.foot, "Notes", result.notes);
   append_list(lines.foot, "Sources of the model", reference_texts(*find_model(calibration.scenario.model)));

@@ -1030,6 +1030,22 @@ TEST_F(CalibrationTest, FilesHoldDataFitAndStatistics) {
   }
 }
 
+TEST_F(CalibrationTest, AReportHasARowForEachParameterWhereOnlyOneIsAtItsBound) {
+  auto rows = noisy_hertz();
+  write("c.toml",
+        replaced(k_calibration, "300 GPa", "50 GPa") + "\"data.offset\" = { from = \"-0.1 mm\", to = \"0.1 mm\" }\n");
+  write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+  const Calibration calibration = read();
+  const std::string report = calibration_report(calibration, calibrate(calibration), false);
+  const auto cells_of = [&](const std::string& name) {
+    const std::size_t begin = report.find("| " + name + " ");
+    const std::string row = report.substr(begin, report.find('\n', begin) - begin);
+    return std::ranges::count(row, '|');
+  };
+  EXPECT_EQ(cells_of("material.youngs_modulus"), cells_of("parameter")) << report;
+  EXPECT_EQ(cells_of("data.offset"), cells_of("parameter")) << report;
+}
+
 TEST_F(CalibrationTest, AReportHasDataFigureParametersResidualsAndWhatIsWrong) {
   auto rows = noisy_hertz();
   write("c.toml", "title = \"Steel on steel\"\n" + replaced(k_calibration, "300 GPa", "50 GPa"));
