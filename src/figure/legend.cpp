@@ -77,10 +77,13 @@ constexpr double k_heading_cm = 1.7;
   return (row.entries.size() + columns - 1) / columns;
 }
 
-[[nodiscard]] LegendRow contact_row(const Palette& palette) {
+/// Colours of contacts. Marks tell runs apart if there are several.
+[[nodiscard]] LegendRow contact_row(const Palette& palette, bool has_marks) {
   LegendRow row{"Contact", {}};
   for (const std::string& name : palette.contacts()) {
-    row.entries.push_back({verbatim_text(name), phase_line(palette.contact_line(0, name), Phase::loading)});
+    Stroke stroke = palette.contact_line(0, name);
+    if (!has_marks) stroke.mark = 0;
+    row.entries.push_back({verbatim_text(name), phase_line(stroke, Phase::loading)});
   }
   return row;
 }
@@ -172,7 +175,8 @@ std::string dashed_line(const Stroke& stroke, std::string_view dash) {
   const std::string look = fmt::format("lc rgb '#{:06X}' lw {:.3g} dt {}", stroke.colour, stroke.width, dash);
   if (stroke.mark == 0) return "with lines " + look;
   const int point = k_marks[(stroke.mark - 1) % k_marks.size()] - (stroke.is_open ? 1 : 0);
-  return fmt::format("with linespoints {} pt {} ps 0.45 pn 7", look, point);
+  // A smaller open point has no room beside its line.
+  return fmt::format("with linespoints {} pt {} ps {} pn 7", look, point, stroke.is_open ? 0.8 : 0.45);
 }
 
 std::string event_points(std::string_view name) {
@@ -183,7 +187,7 @@ std::string event_points(std::string_view name) {
 
 std::vector<LegendRow> legend_rows(const std::vector<RunCurves>& runs, const Palette& palette) {
   std::vector<LegendRow> rows;
-  if (runs.size() == 1 || palette.contacts().size() > 1) rows.push_back(contact_row(palette));
+  if (runs.size() == 1 || palette.contacts().size() > 1) rows.push_back(contact_row(palette, runs.size() == 1));
   if (runs.size() > 1) rows.push_back(run_row(runs, palette));
   rows.push_back(phase_row(runs, palette));
   rows.push_back(event_row(runs));

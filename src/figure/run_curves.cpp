@@ -187,10 +187,11 @@ bool join(std::vector<RunCurves>& runs, std::string first, std::string second) {
 }
 
 void join_contacts(std::vector<RunCurves>& runs) {
-  for (std::size_t a = 0; a < runs.front().contacts.size(); ++a) {
-    for (std::size_t b = a + 1; b < runs.front().contacts.size();) {
-      const std::vector<ContactCurve>& contacts = runs.front().contacts;
-      if (!join(runs, contacts[a].name, contacts[b].name)) ++b;
+  for (const RunCurves& run : runs) {
+    for (std::size_t a = 0; a < run.contacts.size(); ++a) {
+      for (std::size_t b = a + 1; b < run.contacts.size();) {
+        if (!join(runs, run.contacts[a].name, run.contacts[b].name)) ++b;
+      }
     }
   }
 }
