@@ -79,7 +79,7 @@ breathe_domain_by_extension = {"hpp": "cpp"}
 autodoc_member_order = "bysource"
 napoleon_use_ivar = True
 autodoc_typehints = "description"
-autodoc_typehints_description_target = "documented"
+autodoc_typehints_description_target = "documented_params"
 # The union of all that numpy makes an array of, by its name.
 autodoc_type_aliases = {"ArrayLike": "ArrayLike"}
 
@@ -142,6 +142,11 @@ def skip_fields(_app, _what, _name, member, skip, _options):
     return skip or type(member).__name__ == "_tuplegetter"
 
 
+def hide_constructor(_app, _what, _name, _member, _options, signature, returns):
+    """Hides the arguments of a class that the package alone makes, from an object of its core."""
+    return ("", returns) if signature and signature.startswith("(core") else None
+
+
 def link_tables(_app, _name, source):
     """Links to tables of plots/ lead to their pages (docs/generate.py writes these)."""
     source[0] = re.sub(r"\]\((?:\.\./)+plots/([\w-]+)\.md\)", r"](/tables/\1.md)", source[0])
@@ -161,3 +166,4 @@ def setup(app):
     app.connect("source-read", link_tables)
     app.connect("doctree-resolved", link_figures)
     app.connect("autodoc-skip-member", skip_fields)
+    app.connect("autodoc-process-signature", hide_constructor)

@@ -993,6 +993,9 @@ def declarations_of(xml, header):
             arguments = member.findtext("argsstring") if kind == "function" and functions.count(name) > 1 else ""
             arguments = re.sub(r"\)[^)]*$", ")", arguments)
             parts.append(f"```{{doxygen{kind}}} {scope}::{name}{arguments}\n```\n\n")
+    spaces = sorted({inner.text.rpartition("::")[0] for inner in file.findall("innerclass")} & set(namespaces))
+    if spaces:
+        parts.insert(0, f"Classes are those of namespace {' and '.join(f'`{space}`' for space in spaces)}.\n\n")
     return parts
 
 

@@ -30,8 +30,8 @@ struct ContinuumResult {
   /// Run of the finite elements: displacement, overlap, force, contact radius and pressure of each contact class,
   /// volume and work. It has no events, and no profiles.
   RunResult run;
-  RunResult law;  ///< run of the scenario's law, whose walls the finite elements follow
-  std::string solver;
+  RunResult law;                                 ///< run of the scenario's law, whose walls the finite elements follow
+  std::string solver;                            ///< name and version of the program that has computed them
   std::size_t elements = 0;                      ///< number of elements
   std::vector<ContinuumDifference> differences;  ///< force and contact radius of each contact class
 };

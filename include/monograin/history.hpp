@@ -38,7 +38,7 @@ class History {
   History& operator=(const History&) = default;
   ~History() = default;
 
-  [[nodiscard]] std::size_t row_count() const noexcept;
+  [[nodiscard]] std::size_t row_count() const noexcept;  ///< number of rows
   /// Names of the columns, without units, in the order in which history.csv has them.
   [[nodiscard]] std::vector<std::string_view> names() const&;
   [[nodiscard]] std::vector<std::string> names() const&& { return copied(names()); }  ///< copies

@@ -17,6 +17,7 @@ struct ContinuumOptions;
 struct ContinuumResult;
 struct Run;
 
+/// What a call that runs a scenario may ask for.
 struct RunOptions {
   /// Called now and then during a run, in the thread of the call. Returning true ends the run by RunInterrupted. An
   /// empty function never ends it.
@@ -26,17 +27,17 @@ struct RunOptions {
 /// Result of run(): how the run ended, and its curves up to that point.
 class RunResult {
  public:
-  explicit RunResult(std::shared_ptr<const Run> run);
+  explicit RunResult(std::shared_ptr<const Run> run);  ///< for the library itself
   /// A result that was moved from stays as it was.
   RunResult(const RunResult&) = default;
   RunResult& operator=(const RunResult&) = default;
 
-  RunStatus status = RunStatus::complete;
-  std::string message;                ///< why the run stopped or failed; empty if it is complete
-  std::string limit;                  ///< code of the limit that stopped the run, e.g. "walls-meet"; empty: none
-  std::vector<std::string> warnings;  ///< sentences for the user
-  std::string integrator;             ///< name of the integrator that was used
-  History history;                    ///< a row at each output point, and two rows around each event
+  RunStatus status = RunStatus::complete;  ///< how the run ended
+  std::string message;                     ///< why the run stopped or failed; empty if it is complete
+  std::string limit;                       ///< code of the limit that stopped the run, e.g. "walls-meet"; empty: none
+  std::vector<std::string> warnings;       ///< sentences for the user
+  std::string integrator;                  ///< name of the integrator that was used
+  History history;                         ///< a row at each output point, and two rows around each event
   History events;  ///< a row for each event: time, contact class, event, and all columns of the history
 
   /// Text of run.json: the scenario, the integrator, versions, warnings and timings.

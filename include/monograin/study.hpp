@@ -50,6 +50,7 @@ struct SweepOptions {
   std::function<bool()> stop{};
 };
 
+/// Result of sweep().
 struct SweepResult {
   std::filesystem::path folder;
   std::size_t missing = 0;   ///< number of runs that other shards have yet to do
@@ -72,6 +73,7 @@ struct SweepResult {
 /// @throws RunInterrupted if the options end the sweep
 [[nodiscard]] SweepResult sweep(const Source& source, const SweepOptions& options = {});
 
+/// Result of sensitivity().
 struct SensitivityResult {
   std::filesystem::path folder;
   /// Content of sensitivity.csv: a row for each result and key, with the shares of the variance (design `saltelli`) or
@@ -104,6 +106,7 @@ struct FittedParameter {
   bool is_determined = false;  ///< true if the data determine the value
 };
 
+/// Result of calibrate().
 struct CalibrationResult {
   std::string name;
   std::vector<FittedParameter> parameters;
@@ -144,6 +147,7 @@ struct DataResult {
 [[nodiscard]] DataResult read_data(const std::filesystem::path& file, const std::string& x = {},
                                    const std::string& y = {});
 
+/// Result of design().
 struct DesignResult {
   std::string name;
   std::vector<std::string> programs;            ///< names of all programs

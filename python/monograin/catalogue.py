@@ -21,8 +21,10 @@ class Key:
         meaning: the quantity or option that the key sets, as a phrase.
         kind: ``"quantity"``, ``"choice"``, ``"toggle"`` or ``"file"``.
         unit: SI unit of a quantity; ``"-"`` for a pure number; empty for other kinds.
-        lower, upper: bounds of a quantity, in ``unit``.
-        lower_is_open, upper_is_open: True if the bound itself is not admissible.
+        lower: lower bound of a quantity, in ``unit``.
+        upper: upper bound of a quantity, in ``unit``.
+        lower_is_open: True if the lower bound itself is not admissible.
+        upper_is_open: True if the upper bound itself is not admissible.
         default: value that an absent key has; None if there is none.
         choices: admissible words of a choice.
         is_required: True if the key must be given.
@@ -58,7 +60,8 @@ class Model:
         has_walls: True if the model has a particle between walls.
         has_free_centre: True if ``[loading] centre = "equilibrium"`` is allowed.
         has_profile: True if :meth:`monograin.Run.profile` gives pressure and surface under a contact.
-        regimes, events: names, with a sentence about each.
+        regimes: names of the regimes, with a sentence about each.
+        events: names of the events, with a sentence about each.
         validity: limits of the model, a sentence each.
     """
 

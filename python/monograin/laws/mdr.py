@@ -191,14 +191,17 @@ def pull_off_radius(
 
 
 class PeelCurve(NamedTuple):
-    """Stable states of an adhesive contact whose edge recedes, from the largest contact radius down to pull-off."""
+    """Stable states of an adhesive contact whose edge recedes, from the largest contact radius down to pull-off.
+
+    Attributes:
+        contact_radius: a [m], shape (points,).
+        displacement: of the wall [m] from the position in which it touches the relaxed surface on the axis, shape (points,).
+        force: force [N], negative in tension, shape (points,).
+    """
 
     contact_radius: NDArray[np.float64]
-    """a [m], shape (points,)."""
     displacement: NDArray[np.float64]
-    """Displacement of the wall [m] from the position in which it touches the relaxed surface on the axis."""
     force: NDArray[np.float64]
-    """Force [N], negative in tension."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, PeelCurve) and same(tuple(self), tuple(other))
@@ -262,7 +265,7 @@ def power_profile_1d(coefficient: ArrayLike, exponent: ArrayLike, x: ArrayLike) 
     Source: Zunker and Kamrin (2024), Part I, eq. 4.
 
     Args:
-        coefficient: C.
+        coefficient: the factor C of the power.
         exponent: n, 0 or above.
         x: distance from the axis, 0 or above.
     """
@@ -276,7 +279,7 @@ def power_profile_3d(coefficient: ArrayLike, exponent: ArrayLike, r: ArrayLike) 
     Source: Zunker and Kamrin (2024), Part I, eq. 5.
 
     Args:
-        coefficient: C.
+        coefficient: the factor C of the power.
         exponent: n, 0 or above.
         r: distance from the axis, 0 or above.
     """
