@@ -53,10 +53,10 @@ class Centre {
   [[nodiscard]] Eigen::Vector3d stretch(double xi, const Eigen::Vector3d& x) const noexcept {
     return x - rest_ - (xi - since_) * velocity_;
   }
-  /// Room left before forces drive the centre away, where only the weak spring holds it: 1 at rest, 0 at the limit.
+  /// Room left before forces drive the centre away, where only the weak spring holds it: 1 at rest, 0 at the limit,
+  /// which is ten radii.
   [[nodiscard]] double room(double xi, const Eigen::Vector3d& x) const noexcept {
-    constexpr double k_farthest = 10.0;  // over R0
-    return 1.0 - stretch(xi, x).cwiseAbs().maxCoeff() / k_farthest;
+    return 1.0 - stretch(xi, x).cwiseAbs().maxCoeff() / 10.0;
   }
   /// Energy of the spring, which is no part of the law.
   [[nodiscard]] double energy(double xi, const Eigen::Vector3d& x) const noexcept {

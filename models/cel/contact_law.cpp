@@ -8,6 +8,7 @@
 #include "cel/constants.hpp"
 #include "elastic/hertz.hpp"
 #include "elastic/sphere_influence.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::cel {
 namespace {
@@ -21,7 +22,6 @@ constexpr double k_johnson_by_pressure = 3.0 * pi / 4.0;
 /// Sine of half the angle, and last term of the series, of the self influence: part of the law's definition.
 constexpr double k_self_half_sine = 0.2;
 constexpr int k_last_term = 4000;
-constexpr double k_same_angle = 1e-12;
 
 }  // namespace
 
@@ -143,7 +143,7 @@ Advance advance_of(double growth) noexcept {
 std::vector<Coupling> couplings_of(double poisson_ratio, std::span<const ContactClass> classes) {
   std::map<double, double> influences;  // by angle, each computed once
   const auto influence_at = [&](double angle) {
-    const auto [at, is_new] = influences.try_emplace(std::round(angle / k_same_angle));
+    const auto [at, is_new] = influences.try_emplace(std::round(angle / k_same_value));
     if (is_new) at->second = sphere_influence(poisson_ratio, angle);
     return at->second;
   };

@@ -11,10 +11,6 @@ namespace {
 
 namespace fit = constants;
 
-/// Load of the core over Y R0^2 below which it has no direction.
-constexpr double k_no_load = 1e-14;
-constexpr std::size_t k_most_shapes = 6;  ///< components of a symmetric tensor
-
 Eigen::Matrix3d symmetric(const Eigen::Matrix3d& a) noexcept { return 0.5 * (a + a.transpose()); }
 
 Eigen::Matrix3d deviator(const Eigen::Matrix3d& a) noexcept {
@@ -24,7 +20,7 @@ Eigen::Matrix3d deviator(const Eigen::Matrix3d& a) noexcept {
 /// Adds to a basis the part of a tensor that lies outside of it.
 /// @return whether there is such a part
 bool extend(std::vector<Eigen::Matrix3d>& basis, const Eigen::Matrix3d& tensor) {
-  if (basis.size() == k_most_shapes) return false;
+  if (basis.size() == 6) return false;  // a symmetric tensor has no more components
   Eigen::Matrix3d rest = tensor.normalized();
   for (int pass = 0; pass < 2; ++pass) {
     for (const Eigen::Matrix3d& known : basis) rest -= contraction(known, rest) * known;
@@ -58,7 +54,8 @@ void CoreLoad::evaluate(double yield_stress) noexcept {
   T = deviator(symmetric(core.C * pushes));
   per_S = 1.0 / (Y * (fit::s0 + fit::s1 * core.e));
   s = 0.5 * std::sqrt(1.5 * T.squaredNorm());
-  if (!(s > k_no_load * Y)) {
+  // Pushes that balance each other in all directions leave only round-off, which has no direction.
+  if (!(s > k_no_net_force * pushes.norm())) {
     s = per_s = use = Q = 0.0;
     flow = {};
     return;

@@ -17,8 +17,7 @@ namespace {
 
 using std::string_view;
 
-constexpr double k_degree = std::numbers::pi / 180.0;
-constexpr double k_least_wall_angle = 40.0 * k_degree;
+constexpr double k_least_wall_angle = 40.0 * std::numbers::pi / 180.0;
 
 constexpr std::array k_material{
     QuantityKey{"youngs_modulus", "Young's modulus", Dimension::stress, k_positive},

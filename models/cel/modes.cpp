@@ -7,18 +7,11 @@
 
 #include "cel/newton.hpp"
 #include "contacts/side_ahead.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::cel {
 namespace {
 
-/// Value of the yield function at which its guard fires; more than round-off of a contact that just stopped flowing.
-constexpr double k_beyond_yield = 1e-12;
-/// Distance of the yield function from zero up to which a contact may flow.
-constexpr double k_at_yield = 1e-9;
-/// Least rate of the yield function at which a contact at yield begins to flow.
-constexpr double k_least_rate = 1e-13;
-/// Relative difference of the rates of dents that is round-off.
-constexpr double k_alike = 1e-6;
 /// Largest coverage to which the law is fitted: half the contact area over pi R0^2, which is 2 for the whole surface.
 constexpr double k_most_coverage = 1.7;
 
@@ -77,9 +70,9 @@ void decide_flow(Particle& p, Motion& motion, double xi, std::span<const double>
     for (std::size_t i = 0; i < p.size(); ++i) {
       ClassState& c = p.classes[i];
       if (worst < 0.0) {
-        if (c.flows && dent_rate(i) <= worst * (1.0 - k_alike)) c.flows = may_flow[i] = false;
-      } else if (!c.flows && may_flow[i] && c.touches && c.yield.f > -k_at_yield &&
-                 motion.yield_rate(p, i) > k_least_rate) {
+        if (c.flows && dent_rate(i) <= worst * (1.0 - k_at_rest)) c.flows = may_flow[i] = false;
+      } else if (!c.flows && may_flow[i] && c.touches && c.yield.f > -k_solved &&
+                 motion.yield_rate(p, i) > k_zero_guard) {
         c.flows = has_changed = true;
       }
     }
@@ -96,7 +89,8 @@ double value_of(const Guard& guard, const Particle& p, const Motion& motion, dou
     case k_lost:
       return c.is_force_controlled() ? c.drive.value(xi) / c.drive.size() : (c.contact.u + p.slack(i)) / p.depth();
     case k_yield:
-      return c.yield.f - k_beyond_yield;
+      // More than round-off: a contact that just stopped flowing is at yield.
+      return c.yield.f - k_same_value;
     case k_reversal:
       return dent_rate / (std::abs(dent_rate) + std::abs(c.drive.rate()) + p.depth());
     case k_fold:

@@ -4,15 +4,15 @@
 #include <cmath>
 
 #include "system/equations.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::cel {
 namespace {
 
 /// Next to the beginning of flow, an overlap may be near the resolution. The rate of stabilization is there
 /// k_first_stabilization over the distance from the beginning. Times the length of a first step it is below one, so
-/// that correctors converge. k_nearest_flow bounds the rate in the shortest steps.
+/// that correctors converge.
 constexpr double k_first_stabilization = 0.5;
-constexpr double k_nearest_flow = 1e-9;
 
 /// Distance from a fold, without its sign: speed of the walls that touch, over the sum of that and the speed of their
 /// contacts; 0 at a fold. Where a force begins, contacts have no stiffness yet, which is no fold.
@@ -44,8 +44,9 @@ double Motion::evaluate(Particle& p, double xi, std::span<const double> y) {
         -p.centre.net_force_rate().head(p.layout().directions);
   p.residual(xi, {right_.col(1).data(), size});
   const double since = xi - flow_begin_;
+  // k_ahead bounds the rate in the shortest steps.
   right_.col(1) *=
-      -(since > 0.0 ? std::max(k_stabilization, k_first_stabilization / (since + k_nearest_flow)) : k_stabilization);
+      -(since > 0.0 ? std::max(k_stabilization, k_first_stabilization / (since + k_ahead)) : k_stabilization);
   const double sign = tangent_.solve(right_, solutions_);
 
   rates_.assign(solutions_.data(), solutions_.data() + size);

@@ -9,15 +9,10 @@
 namespace monograin::cel {
 namespace {
 
-constexpr int k_most_corrections = 60;
-constexpr int k_most_halvings = 40;
 constexpr int k_most_polishings = 4;
 constexpr double k_most_growth = 0.03;  ///< largest growth of a dent in one correction
 /// Smallest dent of a trial, over a_Y: a dent that begins to flow is a_Y to within round-off.
 constexpr double k_least_dent = 0.9;
-constexpr double k_solved = 1e-10;  ///< residual, over the largest displacement, up to which a state is a solution
-/// Residual, over the largest displacement, below which corrections only polish: round-off may make it larger.
-constexpr double k_stalled = 1e-14;
 
 }  // namespace
 
@@ -75,8 +70,9 @@ void Newton::solve(Particle& p, double xi, std::span<double> y) {
   // A free centre is corrected further: where only the weak spring holds it, a tiny net force still moves it far.
   const bool is_free = p.layout().directions > 0;
   int polished = 0;
-  for (int i = 0; i < k_most_corrections && (is_free || now > k_round_off * largest); ++i) {
-    const bool is_polishing = now <= k_stalled * largest;
+  for (int i = 0; i < k_most_newton_steps && (is_free || now > k_round_off * largest); ++i) {
+    // Below this residual, corrections only polish: round-off may make it larger.
+    const bool is_polishing = now <= k_same_value * largest;
     const double next = correct(p, xi, y, is_polishing ? k_infinity : now);
     if (!(next < now) && (!is_polishing || !is_free)) {
       std::ranges::copy(before_, y.begin());

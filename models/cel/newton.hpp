@@ -9,6 +9,10 @@
 
 namespace monograin::cel {
 
+/// Residual, over the largest displacement, up to which a state is a solution; a contact whose yield function is as
+/// near to zero is at yield.
+inline constexpr double k_solved = 1e-9;
+
 class Newton {
  public:
   /// Corrects a state for given core and dents of contacts that do not flow, and evaluates it.

@@ -12,7 +12,6 @@ namespace {
 /// Elastic displacement, over the program's depth, of a contact that may be idle: no integrator is exact enough to
 /// show that such a contact bears.
 constexpr double k_idle_touch = 1e-8;
-constexpr double k_gap_of_left_wall = 10.0 * k_idle_touch;  // over the depth
 
 }  // namespace
 
@@ -73,7 +72,7 @@ std::optional<std::vector<std::size_t>> Particle::leave_walls(std::span<double> 
     if ((c.touches || c.contact.F > 0.0) && !c.is_force_controlled() && !(c.drive.rate() > 0.0)) left.push_back(i);
   }
   if (left.empty()) return std::nullopt;
-  const double gap = k_gap_of_left_wall * depth_;
+  const double gap = 10.0 * k_idle_touch * depth_;  // a guard cannot find these contacts at once
   Eigen::MatrixXd arms(left.size(), layout_.directions);
   Eigen::VectorXd distances(left.size());
   for (std::size_t k = 0; k < left.size(); ++k) {

@@ -124,10 +124,9 @@ class Particle {
   void evaluate(std::span<const double> y, bool with_yield = true);
   /// Chooses the equations (E) that suit the forces at the state that was evaluated.
   void choose_balance();
-  /// True for an idle wall of a loose particle: it bears no more than the weak spring does.
+  /// True for an idle wall of a loose particle: it bears no more than the weak spring does at ten times the depth.
   [[nodiscard]] bool is_idle(const ClassState& c) const noexcept {
-    constexpr double k_times = 10.0;
-    return c.contact.F < k_times * Centre::k_weak_spring * depth_;
+    return c.contact.F < 10.0 * Centre::k_weak_spring * depth_;
   }
   /// Moves an unloaded free particle off the walls that rest or withdraw. Otherwise the weak spring, which the former
   /// load has stretched, would press it against them.

@@ -1,4 +1,4 @@
-/// Tolerances by which every room decides that a value is zero, or that two values are equal.
+/// Tolerances by which every room decides that a value is zero, or that two values are equal, and limits of iterations.
 #pragma once
 
 #include <limits>
@@ -31,6 +31,9 @@ inline constexpr double k_no_direction = 1e-6;
 inline constexpr double k_no_net_force = 1e-9;
 /// Stiffness, over the greatest one, that is round-off.
 inline constexpr double k_no_stiffness = 1e-12;
+/// Rate of a wall, a contact or a force, over the largest such rate, that is none: an error of integration, or
+/// round-off of a balance of forces.
+inline constexpr double k_at_rest = 1e-9;
 /// Margin to a fold, 1 far from it and 0 at it, at which the fold counts as reached: no state exists beyond, so that a
 /// guard that is zero there could not be located. The margin is the square root of the distance, of which 1e-10 is
 /// left.
@@ -42,5 +45,12 @@ inline constexpr double k_same_instant = 1e-13;
 inline constexpr double k_zero_guard = 1e-13;
 /// Step coordinate ahead of an instant at which the mode that begins is read.
 inline constexpr double k_ahead = 1e-9;
+
+// Limits of iterations. They bound the work where there is no solution; none decides about a result.
+
+/// Steps of Newton's method. Quadratic convergence needs ten, halving of the error 52.
+inline constexpr int k_most_newton_steps = 100;
+/// Halvings of a step or of an interval, of which k_same_value is left.
+inline constexpr int k_most_halvings = 40;
 
 }  // namespace monograin
