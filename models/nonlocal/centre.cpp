@@ -10,14 +10,9 @@
 namespace monograin::nonlocal {
 namespace {
 
-// Distance of two positions that count as one, over the length of the path; shortest step.
-constexpr double k_same_position = 1e-13;
-constexpr double k_shortest = 1e-11;
-constexpr double k_early = 1e-9;  // of a step: near its start, which walls touch is read here
 // Shares of a step before its end at which touching walls are read, too. Too far from the end, a wall that has only
 // just left goes unnoticed; too near, the remainder is round-off.
 constexpr std::array k_late{1e-3, 1e-6, 1e-9};
-constexpr int k_most_tries = 300;  // rejected steps of a path; after that many, differences are round-off
 
 }  // namespace
 
@@ -114,11 +109,11 @@ bool CentreSearch::try_step(Contacts& contacts, double done, double next, double
     return true;
   };
   const auto lead_to_one_position = [&] {
-    return (contacts.centre_of(at_once_) - contacts.centre_of(by_halves_)).norm() <= k_same_position * size;
+    return (contacts.centre_of(at_once_) - contacts.centre_of(by_halves_)).norm() <= k_same_value * size;
   };
   // The test that rejects a step soonest comes first, because most steps are too long.
   const auto goes_on = [may_be_cut](bool is_same) { return is_same || !may_be_cut; };
-  return reach(next, at_once_) && reach(std::lerp(done, next, k_early), early_) && goes_on(touch_the_same(early_)) &&
+  return reach(next, at_once_) && reach(std::lerp(done, next, k_ahead), early_) && goes_on(touch_the_same(early_)) &&
          reach(std::midpoint(done, next), by_halves_) && reach(next, by_halves_) && goes_on(lead_to_one_position()) &&
          std::ranges::all_of(k_late, [&](double late) { return reach(std::lerp(done, next, 1.0 - late), late_); }) &&
          reach(next, late_) && goes_on(touch_the_same(late_));
@@ -136,21 +131,23 @@ bool CentreSearch::follow(Contacts& contacts, std::span<const Target> targets, s
   std::ranges::copy(y, carried_.begin());
   double step = 1.0;
   double too_far = 1.0;  // end of the last step that was too long
-  int tries = 0;
+  // To close in on where a wall begins or ceases to touch takes as many rejected steps as halvings. Where more of them
+  // are rejected, differences are round-off.
+  int tries = k_most_halvings * static_cast<int>(ends_.size() + 1);
   for (double done = 0.0; done < 1.0;) {
     const double next = std::min(1.0, done + step);
-    const bool may_be_cut = step > k_shortest && tries < k_most_tries;
+    const bool may_be_cut = step > k_same_value && tries > 0;
     if (!try_step(contacts, done, next, size, may_be_cut)) {
       if (!may_be_cut) return false;
       too_far = next;
       step *= 0.5;
-      ++tries;
+      --tries;
       continue;
     }
     std::ranges::copy(by_halves_, carried_.begin());
     done = next;
     // A rejected step contains a point where other walls begin to touch. The next steps close in on it, and pass it.
-    step = done < too_far ? std::max(k_shortest, 0.5 * (too_far - done)) : 1.0 - done;
+    step = done < too_far ? std::max(k_same_value, 0.5 * (too_far - done)) : 1.0 - done;
   }
   std::ranges::copy(carried_, y.begin());
   return true;

@@ -12,10 +12,6 @@
 namespace monograin::nonlocal {
 namespace {
 
-// Bounds of a step along the branch: shares of the s at which walls push each other off, and of how deep contacts are.
-constexpr double k_share_of_rivalry = 0.25;
-constexpr double k_share_of_depth = 0.5;
-
 double require_poisson_ratio(double nu) {
   if (nu >= 0.0 && nu <= 0.5) return nu;
   throw std::invalid_argument("Poisson's ratio must be in [0, 0.5], but is " + std::to_string(nu));
@@ -105,7 +101,8 @@ double Contacts::least_pivot(std::span<const double> y, double shift) {
 }
 
 double Contacts::branch_reach(std::size_t index, double signed_square) const noexcept {
-  return std::max(k_share_of_rivalry * rivalry_[index], k_share_of_depth * std::abs(signed_square));
+  // A quarter of the s at which walls push each other off, or half of the present one.
+  return std::max(0.25 * rivalry_[index], 0.5 * std::abs(signed_square));
 }
 
 void Contacts::contacts(std::span<const double> y, std::span<ContactState> states) {

@@ -59,10 +59,12 @@ struct ContactState {
 
 // Tolerances that several searches share.
 
-/// Contacts with a smaller overlap than this, over the walls' displacements or the deepest contact, do not show which
-/// ones will support the centre.
+/// Contacts with a smaller overlap than this, over the walls' displacements or the deepest contact, support a free
+/// centre too softly for an integrator, and do not show which ones will support it.
 inline constexpr double k_unloaded = 1e-6;
-inline constexpr double k_touching = 1e-10;  ///< gap at which walls begin to bear, over the walls' displacements
+/// Gap or overlap of a wall that just touches a free centre, over the walls' displacements or the deepest contact: its
+/// s has the forces' round-off to the power 2/3.
+inline constexpr double k_touching = 1e-9;
 
 /// Local contacts of all classes, with their surroundings as they are.
 struct Evaluation {

@@ -6,22 +6,16 @@
 #include <stdexcept>
 #include <string>
 
+#include "system/difficulty.hpp"
 #include "system/limit.hpp"
 #include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
 
-constexpr double k_least_step = 1e-13;  // of the path to a state that Newton's method does not find at once
-constexpr int k_most_steps = 1000;      // on that path, rejected ones included
-constexpr int k_most_round_offs = 20;   // times that the path's end balances but for forces of round-off
-constexpr int k_most_descent_steps = 100;
-constexpr double k_past_balance = 0.5;  // slope of the energy past its minimum on a step, over the slope at the start
-
-// Smallest margin, and smallest contact radius over R, that a search along a path resolves: the path ends at the limit
-// of applicability, or where the contacts open.
-constexpr double k_no_margin = 5e-4;
-constexpr double k_no_contact = 5e-7;
+// Steps on the path to a state that Newton's method does not find at once, rejected ones included.
+constexpr int k_most_steps = 1000;
+constexpr int k_most_round_offs = 20;  // times that the path's end balances but for forces of round-off
 
 /// True if the net force is no larger than the resolution of s makes it. Idle contacts are no deeper than round-off,
 /// and their forces need not balance.
@@ -110,7 +104,7 @@ void EquilibriumSearch::approach_in_steps(Contacts& contacts, std::span<double> 
     }
     step *= 0.5;
     // A path that also accepts short steps now and then may still not arrive.
-    const bool may_go_on = step > k_least_step && steps < k_most_steps;
+    const bool may_go_on = step > k_same_instant && steps < k_most_steps;
     if (is_on_branch && is_balanced_but_for_round_off(contacts, trial_) &&
         (++round_offs == k_most_round_offs || !may_go_on)) {
       std::ranges::copy(trial_, state_.begin());
@@ -128,8 +122,9 @@ void EquilibriumSearch::throw_no_state(Contacts& contacts, bool is_on_branch, do
   const double widest =
       std::ranges::max_element(contacts.evaluate(state_).local, {}, &LocalContact::contact_radius)->contact_radius;
   const double margin = contacts.margin(state_);
-  if (margin < k_no_margin) throw DomainError({Limit::applicability, -1, "margin", margin});
-  if (widest < k_no_contact) throw DomainError(Limit::centre_not_held);
+  // The path ends at the limit of applicability, or where the contacts open, as near as a search resolves these.
+  if (margin < k_hard_margin) throw DomainError({Limit::applicability, -1, "margin", margin});
+  if (widest * widest < k_resolution) throw DomainError(Limit::centre_not_held);
   throw DomainError(Limit::no_solution, "no equilibrium on the branch of the unloaded state beyond " +
                                             std::to_string(100.0 * done) +
                                             " % of the path to the prescribed displacements and forces, where the "
@@ -157,14 +152,15 @@ bool EquilibriumSearch::descend_to_balance(Contacts& contacts, std::span<double>
   };
   Eigen::Vector3d position = contacts.centre_of(state_);
   auto net = net_at(position);
-  for (int step = 0; net && step < k_most_descent_steps; ++step) {
+  for (int step = 0; net && step < k_most_newton_steps; ++step) {
     Eigen::Vector3d move = newton_.step_to_balance(contacts, *net);
     if (move.norm() <= k_round_off * size) break;
     move *= std::min(1.0, size / move.norm());
     const double power = move.dot(*net);
-    // A step is halved if there is no state at its end, or if it goes too far past the balance.
+    // A step is halved if there is no state at its end, or if it goes too far past the balance: the energy rises there
+    // half as steeply as it falls at the start.
     auto next = net_at(position + move);
-    for (; !(next && move.dot(*next) <= -k_past_balance * power) && move.norm() > k_round_off * size;
+    for (; !(next && move.dot(*next) <= -0.5 * power) && move.norm() > k_round_off * size;
          next = net_at(position + move)) {
       move *= 0.5;
     }

@@ -92,7 +92,7 @@ void GuardSet::arm_impingement(const Particle& p) {
   }
 }
 
-/// Arms the guards that stop an integrator next to the end of a force that bears a free centre.
+/// Arms the guards that stop an integrator at k_ahead before the end of a force that bears a free centre.
 void GuardSet::arm_ends_of_forces(const Particle& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!p.is_force_controlled(i) || p.end_of_force(i) == k_infinity) continue;
@@ -156,7 +156,7 @@ void GuardSet::values(Particle& p, double xi, std::span<const double> y, std::sp
         values[g] = p.contacts().least_pivot(p.state(), k_stiff_margin);  // zero where the margin is k_stiff_margin
         break;
       case k_force_ends:
-        values[g] = p.end_of_force(index) - k_end_of_force - xi;
+        values[g] = p.end_of_force(index) - k_ahead - xi;
         break;
       default:
         values[g] = limit_value(p, list_[g], xi);

@@ -10,14 +10,13 @@
 
 #include "nonlocal/equations.hpp"
 #include "nonlocal/equilibrium.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::nonlocal {
 namespace {
 
-// Longest step along the path of states, in the unknowns and xi. The search gives up below the shortest step, or below
-// that xi of the first state.
+// Longest step along the path of states, in the unknowns and xi.
 constexpr double k_longest_path_step = 0.05;
-constexpr double k_shortest_path_step = 1e-9;
 
 /// A point of the path: the unknowns, then xi.
 using Point = Eigen::VectorXd;
@@ -44,7 +43,7 @@ class Path {
     Point point = from + distance * tangent;
     Point missing(point.size());
     double last = 0.0;
-    for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
+    for (int iteration = 0; iteration < k_most_newton_steps; ++iteration) {
       if (!(*std::max_element(point.begin(), point.begin() + static_cast<long>(contacts_.class_count())) <
             contacts_.law().end())) {
         return std::nullopt;
@@ -55,9 +54,9 @@ class Path {
       const Point step = solve(point, tangent, missing);
       point -= step;
       const double size = step.norm();
-      if (size <= k_last_step * point.norm()) return point;
+      if (size <= k_round_off * point.norm()) return point;
       if (iteration > 0 && size > 0.5 * last) {
-        if (size <= 100.0 * k_last_step * point.norm()) return point;
+        if (size <= 100.0 * k_round_off * point.norm()) return point;
         return std::nullopt;
       }
       last = size;
@@ -66,9 +65,6 @@ class Path {
   }
 
  private:
-  static constexpr int k_newton_limit = 60;
-  static constexpr double k_last_step = 1e-15;  ///< over the size of the point
-
   /// Solves the equations' Jacobian bordered by one row, which keeps it regular where the path turns back. The
   /// least-norm solution leaves the centre in place along directions that no contact supports.
   [[nodiscard]] Point solve(const Point& point, const Point& border, const Point& right_side) {
@@ -107,7 +103,7 @@ std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ra
       search.solve(contacts, ramps, xi, y);
       break;
     } catch (const std::domain_error&) {
-      if (xi < k_shortest_path_step) throw;
+      if (xi < k_ahead) throw;
     }
   }
 
@@ -123,7 +119,7 @@ std::optional<double> limit_of_step(Contacts& contacts, std::span<const Ramp> ra
     const std::optional<Point> next = path.beyond(point, direction, length);
     if (!next) {
       length *= 0.5;
-      if (length < k_shortest_path_step) {
+      if (length < k_ahead) {
         throw std::domain_error("the path of equilibria ends at xi = " + std::to_string(xi_of(point)) +
                                 " with a margin of " + std::to_string(contacts.margin(unknowns(point))));
       }

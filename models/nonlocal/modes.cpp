@@ -9,9 +9,7 @@
 namespace monograin::nonlocal {
 namespace {
 
-constexpr double k_margin_tolerance = 1e-14;
-constexpr int k_most_quotients = 6;      // Rayleigh quotients; each cubes the error of the mode, two are usual
-constexpr double k_no_coupling = 1e-13;  // coupling that counts as none, over the largest one
+constexpr int k_most_quotients = 6;  // Rayleigh quotients; each cubes the error of the mode, two are usual
 
 std::size_t in(Eigen::Index index) noexcept { return static_cast<std::size_t>(index); }
 Eigen::Index at(std::size_t index) noexcept { return static_cast<Eigen::Index>(index); }
@@ -68,7 +66,7 @@ double quotient(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& mode) noex
 
 /// For each row of a matrix, the first row that it couples with, directly or through other rows.
 std::vector<std::size_t> coupled(const Eigen::MatrixXd& matrix) {
-  const double least = k_no_coupling * matrix.cwiseAbs().maxCoeff();
+  const double least = k_same_value * matrix.cwiseAbs().maxCoeff();
   std::vector<std::size_t> first(in(matrix.rows()));
   std::iota(first.begin(), first.end(), std::size_t{0});
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -152,7 +150,8 @@ double Modes::least_eigenvalue(Block& block) const {
     set_matrix(block, 0.0);
     const double found = quotient(block.matrix, block.critical_mode);
     if (block.matrix.rows() == 1) return found;
-    block.matrix.diagonal().array() -= found - k_margin_tolerance;
+    // The pivots of the elimination have ten times the round-off of a few operations.
+    block.matrix.diagonal().array() -= found - 10.0 * k_round_off;
     if (eliminate(block.matrix, true) > 0.0) return found;
     solve(block.matrix, block.critical_mode);
     block.critical_mode /= block.critical_mode.norm();

@@ -8,11 +8,8 @@
 namespace monograin::nonlocal {
 namespace {
 
-constexpr int k_newton_limit = 100;    // contraction by half reaches round-off in 52
-constexpr double k_contraction = 0.5;  // largest ratio of Newton's corrections; beyond it the guess is too far away
 constexpr int k_first_touch_steps = 20;
 constexpr double k_stagnation = 1e-9;  // relative correction that is round-off, which grows with 1/margin
-constexpr double k_cancelled = 1e-12;  // net prescribed force that counts as zero, over the sum of the forces
 
 /// Magnitude of the net prescribed force along the directions in which no contact supports the centre, however small
 /// beside other forces; 0 if only round-off is left of it. Contacts under force control support nothing.
@@ -28,7 +25,7 @@ double unborne_force(const Contacts& contacts, std::span<const Target> targets, 
     push += contacts.weight(j) * targets[j].value * along;
     sum += contacts.weight(j) * targets[j].value;
   }
-  return push.norm() > k_cancelled * sum ? push.norm() : 0.0;
+  return push.norm() > k_same_value * sum ? push.norm() : 0.0;
 }
 
 }  // namespace
@@ -171,7 +168,7 @@ bool Newton::solve(const Contacts& contacts, const Goal& goal, std::span<double>
   Search search = begin(contacts, goal, y);
   const bool may_lend = search.moves_centre && goal.is_to_balance && !search.is_first_touch;
   double last = 0.0;
-  for (int iteration = 0; iteration < k_newton_limit; ++iteration) {
+  for (int iteration = 0; iteration < k_most_newton_steps; ++iteration) {
     if (!evaluate(contacts, goal, y)) return false;
     if (iteration == 0 && may_lend && regularize_stiffness(contacts, goal, k_touching * search.farthest, y)) {
       search.free_steps = k_first_touch_steps;
@@ -183,7 +180,8 @@ bool Newton::solve(const Contacts& contacts, const Goal& goal, std::span<double>
     // The remaining error is at most one further contraction of this correction.
     const double contraction = iteration > 0 ? std::min(correction.largest / last, 1.0) : 1.0;
     if (correction.largest * contraction <= k_round_off * correction.scale) return true;
-    if (!is_free_step && contraction > k_contraction) return is_round_off(contacts, goal, correction, y);
+    // Where a correction is not half of the last one, the guess is too far away.
+    if (!is_free_step && contraction > 0.5) return is_round_off(contacts, goal, correction, y);
     last = correction.largest;
   }
   return false;

@@ -66,7 +66,6 @@ double System::quantity(Quantity quantity, int contact_class, double xi, std::sp
 
 /// Pressure under the contact, and its surface, which is the wall's plane.
 std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::span<const double> y) {
-  constexpr int k_points = 128;
   Particle& p = now_.particle;
   p.evaluate_contacts(xi, y);
   const auto i = static_cast<std::size_t>(contact_class);
@@ -75,8 +74,8 @@ std::vector<SurfacePoint> System::surface(int contact_class, double xi, std::spa
   const double length = p.settings().initial_radius;
   const double square = p.state()[i];
   std::vector<SurfacePoint> points;
-  for (int k = 0; k <= k_points; ++k) {
-    const double r = c.contact_radius * std::sin(0.5 * pi * k / k_points);
+  for (int k = 0; k <= k_surface_points; ++k) {
+    const double r = c.contact_radius * std::sin(0.5 * pi * k / k_surface_points);
     const double pressure = p.contacts().law().pressure(square, std::min(r * r, square));
     const double height = r < 1.0 ? r * r / (1.0 + std::sqrt(1.0 - r * r)) : std::nan("");
     points.push_back({.radius = r * length,

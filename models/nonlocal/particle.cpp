@@ -169,7 +169,7 @@ double Particle::leave_singularity(double xi, std::span<double> y) {
     const bool begins = state_[i] <= scales_.touch && prescribed(i, ahead) > prescribed(i, xi);
     // A contact is lost at the touch tolerance; the rest allows for the error of that event.
     if (begins && support_.may_be_held(contacts_, ramps_, state_, 2.0 * scales_.touch)) later = ahead;
-    if (end > xi && end - xi < 2.0 * k_end_of_force) later = end;
+    if (end > xi && end - xi < 2.0 * k_ahead) later = end;
   }
   if (later == xi) return xi;
   const double energy = contacts_.energy(state_);

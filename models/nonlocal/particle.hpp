@@ -19,9 +19,6 @@
 
 namespace monograin::nonlocal {
 
-/// An integrator stops at this distance in xi before a force that supports a free centre vanishes.
-inline constexpr double k_end_of_force = 1e-8;
-
 /// State of the classes between two transitions.
 struct Mode {
   std::vector<char> is_closed;  ///< in contact

@@ -13,17 +13,9 @@ namespace {
 
 constexpr std::array<std::string_view, 2> k_regime_words{"open", "elastic"};
 
-// Touch tolerance over the program's reach: smaller distances are round-off of the surface's position.
-constexpr double k_touch = 1e-13;
-// Touch tolerance of a free centre, over the deepest contact: its s has the forces' round-off to the power 2/3.
-constexpr double k_touch_of_free_centre = 1e-9;
-// Value of a contact's guard at the touch tolerance, large enough that no integrator takes a wall at rest for a root.
-constexpr double k_guard_at_touch = 1e-12;
 // Largest contact radius over R0 with all terms. Approach and force depend on 1 - a, of which a has ever fewer digits;
 // beyond this radius, the approach has less than eleven.
 constexpr double k_widest_of_all_terms = 1.0 - 1e-6;
-// Contacts with a smaller overlap than this, over the deepest, support a free centre too softly for an integrator.
-constexpr double k_idle = 1e-6;
 
 /// Depth of the deepest contact that the program asks for, over R0; 0 if it asks for none.
 double greatest_depth(const Settings& settings, const Contacts& contacts) {
@@ -45,9 +37,11 @@ Scales scales_of(const Settings& settings, std::span<const ContactClass> classes
   // A program may prescribe any displacement, but before R0 a wall is at the centre, or a contact as wide as the
   // particle.
   scales.depth = std::min(reach, 1.0);
-  scales.touch = settings.centre == Centre::free ? k_touch_of_free_centre * scales.depth : k_touch * reach;
-  scales.guard_unit = std::min(scales.depth, scales.touch / k_guard_at_touch);
-  scales.idle = k_idle * scales.depth;
+  // Beside a fixed centre, smaller distances are round-off of the surface's position.
+  scales.touch = settings.centre == Centre::free ? k_touching * scales.depth : k_zero_guard * reach;
+  // A guard at the touch tolerance is so large that no integrator takes a wall at rest for a root.
+  scales.guard_unit = std::min(scales.depth, scales.touch / (10.0 * k_zero_guard));
+  scales.idle = k_unloaded * scales.depth;
   if (settings.model.terms == Terms::all) scales.widest = k_widest_of_all_terms;
   return scales;
 }

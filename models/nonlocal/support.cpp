@@ -10,7 +10,6 @@ namespace monograin::nonlocal {
 namespace {
 
 constexpr double k_little = 1e-3;        // of the rest of a step: how far ahead forces are evaluated
-constexpr int k_refinements = 2;         // repeated clearances of one position
 constexpr double k_no_approach = 1e-30;  // over R0; less is round-off of zero
 
 bool pushes_centre(const Contacts& contacts, std::size_t j) {
@@ -139,7 +138,8 @@ bool clear_walls(std::span<const contacts::Obstacle> walls, const Eigen::Matrix3
 bool release_centre(std::span<const contacts::Obstacle> walls, const Eigen::Matrix3d& projector,
                     Eigen::Vector3d& centre) {
   if (!clear_walls(walls, projector, centre)) return false;
-  for (int refinement = 0; refinement < k_refinements; ++refinement) {
+  // Two refinements remove the round-off of the first position.
+  for (int refinement = 0; refinement < 2; ++refinement) {
     if (!clear_walls(walls, projector, centre)) break;
   }
   return true;

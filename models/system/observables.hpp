@@ -55,6 +55,9 @@ struct AtWall {
   }
 }
 
+/// Points of a surface from the middle of a contact to its edge.
+inline constexpr int k_surface_points = 128;
+
 /// State of the particle's surface at one radius, under or around a contact.
 struct SurfacePoint {
   double radius = 0.0;          ///< distance from the contact's middle [m]
