@@ -195,13 +195,13 @@ class WallContact {
     if (drive_.direction() == 0 && is_force_controlled() == is_by_force) drive.start_at(drive_.end());
     if (!touches_ && !is_by_force) {
       const double opening = law.opening(branch_);
-      if (std::abs(drive.start() + approach_by_centre - opening) <= k_most_round_off * opening)
+      if (std::abs(drive.start() + approach_by_centre - opening) <= k_same_value * opening)
         drive.start_at(opening - approach_by_centre);
     }
     const double d = is_by_force ? left_at : drive.start() + approach_by_centre;
     double size = drive.size();
     if (touches_ && takes_force && d > law.opening(branch_)) size += size_of_reached(law, d, is_by_force);
-    if (std::abs(drive.rate()) <= k_most_round_off * size) drive.rest();
+    if (std::abs(drive.rate()) <= k_same_value * size) drive.rest();
     // An integrated displacement has an error: the step begins at the exact displacement under its first force.
     const bool is_integrated_on = is_by_force && is_integrated(law);
     drive_ = drive;
@@ -309,9 +309,6 @@ class WallContact {
     if constexpr (requires { Law::k_passed_at_end; }) return Law::k_passed_at_end;
     return PassedAtEnd::opening;
   }();
-
-  /// Relative round-off of the values of a ramp.
-  static constexpr double k_most_round_off = 4.0 * k_round_off;
 
   /// Magnitude whose round-off a ramp has that begins where another control has led: a force that holds a wall has the
   /// round-off of the wall's displacement, a displacement reached under a force that of the force.

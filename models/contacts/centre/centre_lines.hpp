@@ -76,9 +76,8 @@ class CentreLines {
   }
   /// Components of a line's direction in a basis, without round-off.
   [[nodiscard]] Vector components(const Matrix& basis, std::size_t line) const {
-    constexpr double k_no_component = 1e-15;  // a few eps: round-off of sums of three products below 1
     const Vector raw = basis.transpose() * directions_[line];
-    return (raw.array().abs() > k_no_component).select(raw, 0.0);
+    return (raw.array().abs() > k_round_off).select(raw, 0.0);
   }
   /// Displacement of the centre, along the directions of a basis, with which stiffnesses cancel forces; zero along
   /// directions in which the stiffness is round-off. Applies the pseudo-inverse of the stiffness matrix, whose diagonal

@@ -121,7 +121,7 @@ class CentreMode {
     for (const Contact& c : contacts) {
       if (!c.is_force_controlled()) fastest_wall_ = std::max(fastest_wall_, std::abs(c.drive().rate()));
     }
-    ahead_ = std::clamp(k_distance_ahead / fastest_wall_, k_least_ahead, k_most_ahead);
+    ahead_ = std::clamp(1e3 * k_resolution / fastest_wall_, k_least_ahead, k_most_ahead);
     if (const auto c = support_of_loose_particle(law, contacts, y)) write_position(*c, y);
   }
   /// Decides which walls touch, which contacts bear and which ones turn in the mode that begins, by evaluating a little
@@ -186,7 +186,9 @@ class CentreMode {
     const std::size_t i = guard.list_index();
     const WallDrive& drive = at.contacts[i].drive();
     if (guard.kind == k_retreat) {
-      if (overlap(at, i, position(at.y)) <= k_steady_overlap) return k_at_rest / reach_;  // positive: does not fire
+      // The dent of a contact near the resolution would vanish with it, and round-off decides which of several such
+      // contacts carry the centre. The positive value does not fire.
+      if (overlap(at, i, position(at.y)) <= 10.0 * k_touch) return k_at_rest / reach_;
       // The rate of a contact at rest is round-off.
       const double fastest = std::max(velocity.norm(), fastest_wall_);
       return (drive.rate() + centre_.approach_by_centre(i, velocity) + k_at_rest * fastest) / reach_;
@@ -197,20 +199,14 @@ class CentreMode {
 
  private:
   /// Bounds of the time (in step coordinates) by which a mode is decided ahead; briefer modes are missed. The slower
-  /// the walls, the farther ahead, so that the fastest wall moves by k_distance_ahead, which is more than round-off of
-  /// the balance; the fixed k_ahead serves where a mode is read from rates or one contact alone.
+  /// the walls, the farther ahead, so that the fastest wall moves by a thousand times the resolution, which is more
+  /// than round-off of the balance; the fixed k_ahead serves where a mode is read from rates or one contact alone.
   static constexpr double k_least_ahead = 1e-6;
   static constexpr double k_most_ahead = 1e-3;
-  static constexpr double k_distance_ahead = 1e-9;  ///< over R0
   /// Change of an overlap (over R0), from an instant to the one ahead, that is round-off.
-  static constexpr double k_no_change = 1e-14;
+  static constexpr double k_no_change = k_zero_guard;
   /// Gap or overlap (over R0) up to which wall and particle just meet; a contact is lost when its gap becomes larger.
   static constexpr double k_touch = k_resolution;
-  /// Overlap (over R0) up to which a contact does not retreat: its dent would vanish with it, and round-off decides
-  /// which of several such contacts carry the centre.
-  static constexpr double k_steady_overlap = 10.0 * k_touch;
-  /// Rate of a contact's displacement, over that of the fastest wall or the centre, that is round-off.
-  static constexpr double k_at_rest = 1e-9;
 
   /// The walls around the centre at one instant.
   class Instant final : public CentreWalls {

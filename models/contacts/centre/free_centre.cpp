@@ -16,11 +16,9 @@ constexpr double k_near = 1e-5;
 // Determinant of the stiffness, over the cube of its largest diagonal element, above which the stiffnesses in all
 // directions are comparable.
 constexpr double k_comparable = 1e-3;
-constexpr int k_most_steps = 200;
 // The line search ends where the slope of the energy along the step has at most this share of its initial magnitude.
 // The full step is also taken if the energy still falls faster at its end.
 constexpr double k_descent = 0.9;
-constexpr int k_most_sections = 60;
 
 }  // namespace
 
@@ -136,7 +134,7 @@ double FreeCentre::share_of_step(const CentreWalls& walls, std::span<const Role>
   double low = 0.0;
   double high = 1.0;
   double middle = 1.0;
-  for (int k = 0; k < k_most_sections && std::abs(now) > -k_descent * first; ++k) {
+  for (int k = 0; k < k_most_halvings && std::abs(now) > -k_descent * first; ++k) {
     middle = std::midpoint(low, high);
     now = slope(middle);
     (now > 0.0 ? high : low) = middle;
@@ -166,7 +164,7 @@ void FreeCentre::regularize_stiffness(const CentreWalls& walls, std::span<const 
 FreeCentre::Vector FreeCentre::balance(const CentreWalls& walls, std::span<const Role> roles, Vector c) {
   double last_length = k_infinity;
   sum_up(walls, roles, c);
-  for (int k = 0; k < k_most_steps; ++k) {
+  for (int k = 0; k < k_most_newton_steps; ++k) {
     const Vector net = net_force();
     regularize_stiffness(walls, roles, net.norm());
     Vector net_along_held = net;

@@ -8,8 +8,6 @@
 namespace monograin::contacts {
 namespace {
 
-constexpr std::size_t k_most_meetings = 4;  // of each wall on the way
-
 /// The walls that touch, as constraints on a velocity: none of them may approach.
 std::vector<Obstacle> standing(std::span<const Obstacle> walls, std::span<const char> touches) {
   std::vector<Obstacle> found;
@@ -26,7 +24,8 @@ std::optional<Eigen::Vector3d> carried_to_support(const Eigen::Vector3d& push, s
   const auto approaches = [](const Obstacle& wall, const Eigen::Vector3d& path) {
     return wall.mean_normal.dot(path) > k_no_direction * wall.mean_normal.norm();
   };
-  for (std::size_t meeting = 0; meeting <= k_most_meetings * walls.size(); ++meeting) {
+  // No wall is met more often than four times.
+  for (std::size_t meeting = 0; meeting <= 4 * walls.size(); ++meeting) {
     const std::vector<Obstacle> in_contact = standing(walls, touches);
     std::vector<Eigen::Vector3d> normals;
     for (const Obstacle& wall : in_contact) normals.push_back(wall.mean_normal);

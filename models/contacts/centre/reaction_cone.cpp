@@ -7,8 +7,6 @@
 namespace monograin {
 namespace {
 
-constexpr double k_most = 1e6;       // largest multiple over the push; walls aligned to a millionth would need more
-constexpr double k_no_help = 1e-13;  // component of a direction along the unbalanced remainder that is round-off
 // Three directions suffice for any push; more may be active while some depend on each other to within round-off.
 constexpr int k_most_bearing = 8;
 
@@ -20,10 +18,12 @@ bool in_reaction_cone(const Eigen::Vector3d& push, std::span<const Eigen::Vector
   boost::container::static_vector<Eigen::Vector3d, k_most_bearing> bearing;
   boost::container::static_vector<double, k_most_bearing> shares;
   for (std::size_t round = 0; round <= 4 * directions.size(); ++round) {
-    if (left_over.norm() < nothing) return std::ranges::all_of(shares, [](double share) { return share <= k_most; });
+    // Only directions that have no component against the push would need a larger multiple of it.
+    const auto is_possible = [](double share) { return share * k_no_direction <= 1.0; };
+    if (left_over.norm() < nothing) return std::ranges::all_of(shares, is_possible);
     const auto help = [&](const Eigen::Vector3d& direction) { return -direction.dot(left_over); };
     const auto best = std::ranges::max_element(directions, {}, help);
-    if (best == directions.end() || help(*best) <= k_no_help || bearing.size() == k_most_bearing) return false;
+    if (best == directions.end() || help(*best) <= k_same_value || bearing.size() == k_most_bearing) return false;
     bearing.push_back(*best);
     shares.push_back(0.0);
     for (double share_of_step = 0.0; share_of_step < 1.0 && !bearing.empty();) {
