@@ -8,9 +8,6 @@
 namespace monograin::material_point {
 namespace {
 
-// Cosine between the normal of the yield surface and the elastic rate of stress below which the two are perpendicular.
-constexpr double k_neutral = 1e-12;
-
 /// Derivative of the plastic strains by the multiplier.
 PlasticStrains flow_direction(const Phase& phase, const Yield& yield) noexcept {
   return {is_compressible(phase.parameters.model) ? -yield.Psi_p : std::abs(yield.Psi_s), yield.Psi_s};
@@ -68,7 +65,7 @@ bool continues(const Phase& phase, const Response& now) {
   const PlasticFlow flow = plastic_flow(phase, now);
   if (flow.elastic.is_zero()) return true;
   const double direction = flow.cosine();
-  if (std::abs(direction) > k_neutral) return direction > 0.0;
+  if (std::abs(direction) > k_same_value) return direction > 0.0;
   const auto out = way_out(phase.parameters, now.at, now.p, now.s, flow.elastic.p, flow.elastic.s);
   return out && out->t <= k_same_instant;
 }

@@ -16,13 +16,8 @@ namespace {
 // k_last_excess: the next one is round-off. (Where a cap is narrow and the material hardly compressible, f is curved
 // within 1e-11 of strain.) After k_most_small_corrections of that size, f itself is round-off.
 constexpr double k_last_correction = 1e-11;
-// The correction after one of d is d^2 over the elastic strain. Where the elastic strain is tiny, d is the last
-// correction if the next one is below this.
-constexpr double k_strain_round_off = 1e-16;
 constexpr double k_last_excess = 1e-9;
 constexpr int k_most_small_corrections = 12;
-constexpr int k_most_corrections = 60;
-constexpr int k_most_halvings = 20;
 // Plastic strain within which every guess of an integrator lies, at any tolerance. A state that is farther from its
 // guess than this, and than the guess's elastic strain, lies on another branch, behind a loss of uniqueness.
 constexpr double k_nearby = 1e-2;
@@ -81,7 +76,7 @@ class ReturnMapping {
   /// Plastic strains with f = 0, not too far from the guess; none if the method does not reach them.
   [[nodiscard]] std::optional<PlasticStrains> result() {
     try {
-      for (int i = 0; i < k_most_corrections; ++i) {
+      for (int i = 0; i < k_most_newton_steps; ++i) {
         if (!evaluate()) continue;
         if (i == 0) measure_guess();
         if (has_passed_floor()) {
@@ -163,7 +158,8 @@ class ReturnMapping {
 
   /// True if the next correction would be round-off.
   [[nodiscard]] bool has_converged() {
-    const double last_correction = std::min(k_last_correction, std::sqrt(k_strain_round_off * elastic_strain_));
+    // The correction after one of d is d^2 over the elastic strain, which may be tiny.
+    const double last_correction = std::min(k_last_correction, std::sqrt(k_epsilon * elastic_strain_));
     const bool is_small = !(correction_.length() >= last_correction);
     if (!is_small && !is_round_off()) return false;
     return std::abs(now_.yield.f) < k_last_excess || ++small_corrections_ >= k_most_small_corrections;

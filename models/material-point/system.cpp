@@ -31,10 +31,8 @@ constexpr double k_most_gain = 1e3;
 // Share of the strength below which a negative work or dissipation of the flow is round-off.
 constexpr double k_negligible_work = 1e-9;
 
-// Indices of the unknowns.
-constexpr std::size_t k_phi = 0;
-constexpr std::size_t k_deviatoric = 1;
-constexpr std::size_t k_path = 2;
+/// Indices of the unknowns.
+enum UnknownIndex : std::size_t { k_phi, k_deviatoric, k_path };
 
 enum GuardKind { yielding, end_of_segment, apex, domain_end_guard };
 

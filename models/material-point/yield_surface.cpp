@@ -4,12 +4,10 @@
 #include <stdexcept>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::material_point {
 namespace {
-
-// Length by which segments extend beyond their ends in the search for an exit, in units of the yield pressure.
-constexpr double k_slack = 1e-12;
 
 Evolving product(const Evolving& a, const Evolving& b) {
   return {a.value * b.value, a.slope * b.value + a.value * b.slope};
@@ -211,9 +209,10 @@ std::optional<Exit> way_out(const Parameters& parameters, const Properties& prop
     if (!t) return;
     const double at = std::max(*t, 0.0);
     const double reached = p + at * p_rate;
+    // Segments that meet must overlap by round-off, or a path between them would find no exit.
     for (const bool towards_compression : {false, true}) {
       const auto inside = distance_to_end(parameters, properties, segment, towards_compression, reached);
-      if (inside && *inside < -k_slack) return;
+      if (inside && *inside < -k_same_value) return;
     }
     if (!first || at < first->t) first = Exit{at, {segment, side}};
   };
@@ -233,7 +232,7 @@ std::optional<Exit> way_out(const Parameters& parameters, const Properties& prop
     const double rate = side * s_rate + p_rate * cap.friction_slope.value;
     if (rate > 0.0) {
       const double t = -(side * s + p * cap.friction_slope.value - cap.cohesion.value) / rate;
-      if (side * (s + std::max(t, 0.0) * s_rate) >= -k_slack) consider(Segment::shear, side, t);
+      if (side * (s + std::max(t, 0.0) * s_rate) >= -k_same_value) consider(Segment::shear, side, t);
     }
     if (parameters.transition_width == 0.0) continue;
     const auto t = path.out_of(centre, 1.0, -cap.arc_centre.value, side, cap.arc_radius.value);
