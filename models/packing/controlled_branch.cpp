@@ -6,11 +6,11 @@
 namespace monograin::packing {
 namespace {
 
-// Extent of the closed start, over Phi, and over the first half of the controlled quantity's range. It is larger for a
-// branch that begins at a minimum of that quantity, where Phi goes like the root of an error.
+// Extent of the ends of a branch that are not integrated: of the closed start, over Phi and over the first half of the
+// controlled quantity's range, and of the end, over the whole range. The start is larger for a branch that begins at a
+// minimum of the controlled quantity, where Phi goes like the root of an error.
 constexpr double k_start = 1e-6;
 constexpr double k_start_of_fold = 1e-3;
-constexpr double k_last_share = 1e-6;  // share of a branch's range by which a run ends before the branch does
 // Distance of Phi from a pole at which every branch ends: nearer to the pole, strains and rates are round-off.
 constexpr double k_margin_of_pole = 1e-7;
 
@@ -54,7 +54,7 @@ double ControlledBranch::value_at_jamming() const noexcept {
 }
 
 double ControlledBranch::last_value() const noexcept {
-  return range_.greatest - k_last_share * (range_.greatest - range_.least);
+  return range_.greatest - k_start * (range_.greatest - range_.least);
 }
 
 double ControlledBranch::packing_fraction_at(double value) const {

@@ -5,12 +5,12 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "system/resolution.hpp"
+
 namespace monograin::packing {
 namespace {
 
-constexpr int k_iterations = 60;
-constexpr double k_last_step = 1e-14;  // step of Newton's method after which the next one is below round-off
-constexpr double k_noise = 1e-11;      // smaller steps may be round-off
+constexpr double k_noise = 1e-11;  // smaller steps of Newton's method may be round-off
 
 }  // namespace
 
@@ -69,7 +69,7 @@ IntegratedState IntegratedEquations::completed(const IntegratedState& guess) con
 /// Newton's method along the gradient of excess(). @throws std::domain_error if it does not converge
 IntegratedState IntegratedEquations::nearest(IntegratedState y) const {
   double last = 1.0;
-  for (int k = 0; k < k_iterations; ++k) {
+  for (int k = 0; k < k_most_newton_steps; ++k) {
     // Next to jamming, and to a full packing of nearly incompressible particles, a tolerated state may lie outside.
     const double inside = std::max(std::min(y.packing_fraction, branch_.range().end), branch_.least_integrated());
     const bool is_inside = y.packing_fraction == inside;
@@ -84,7 +84,7 @@ IntegratedState IntegratedEquations::nearest(IntegratedState y) const {
     // Corrections that no longer shrink are round-off.
     const bool is_round_off = step < k_noise && step > 0.5 * last;
     last = step;
-    if (step <= k_last_step || is_round_off) return y;
+    if (step <= k_zero_guard || is_round_off) return y;
   }
   throw std::domain_error("no packing fraction bears the stress");
 }

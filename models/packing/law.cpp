@@ -15,10 +15,8 @@ namespace monograin::packing {
 namespace {
 
 constexpr double k_least_room = 1e-5;  // least distance of Phi_J from 1
-// Samples of growing_branch(): from this far above Phi_J in equal ratios, then in equal steps; and one sample this far,
-// over Phi, before full plasticity.
-constexpr double k_first = 1e-15;
-constexpr double k_before_full_plasticity = 1e-14;
+// Samples of growing_branch(): from round-off above Phi_J in equal ratios, then in equal steps; and one sample just
+// before full plasticity.
 constexpr int k_ratios = 60;
 constexpr int k_steps = 200;
 
@@ -261,14 +259,14 @@ Branch growing_branch(const Law& law, Measure measure) {
   // The ratios end where the equal steps begin.
   for (int k = 0; k <= k_ratios; ++k) {
     fractions[static_cast<std::size_t>(k)] =
-        law.jamming + room * std::pow(k_first, 1.0 - static_cast<double>(k) / k_ratios) /
+        law.jamming + room * std::pow(k_round_off, 1.0 - static_cast<double>(k) / k_ratios) /
                           std::pow(static_cast<double>(k_steps), static_cast<double>(k) / k_ratios);
   }
   for (int k = 1; k <= k_steps; ++k) {
     fractions[static_cast<std::size_t>(k_ratios + k)] = std::lerp(law.jamming, 1.0, static_cast<double>(k) / k_steps);
   }
   // As the particles yield, the stress falls fastest just before all of them have yielded, and grows again at once.
-  const double yielding = full_plasticity(law) * (1.0 - k_before_full_plasticity);
+  const double yielding = full_plasticity(law) * (1.0 - k_round_off);
   fractions.back() = std::clamp(yielding, fractions.front(), 1.0);
   std::ranges::sort(fractions);
   const auto slope = [&](double phi) {

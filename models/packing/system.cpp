@@ -12,8 +12,7 @@ namespace monograin::packing {
 namespace {
 
 // Indices of the unknowns.
-constexpr std::size_t k_particles = 0;
-constexpr std::size_t k_fraction = 1;
+enum UnknownIndex : std::size_t { k_particles, k_fraction };
 
 IntegratedState state_of(std::span<const double> y) { return {y[k_particles], y[k_fraction]}; }
 
