@@ -24,6 +24,7 @@
 #include <utility>
 
 #include "system/limit.hpp"
+#include "system/resolution.hpp"
 
 namespace monograin::plastic {
 
@@ -216,8 +217,7 @@ template <class State>
     if (!(std::abs(step) < 2.0)) return std::nullopt;
     x = std::clamp(x * std::exp(step), lower, upper);
     const double quadratic = std::max(1.0, std::abs(step) / (last * last));
-    constexpr double k_round_off_step = 1e-16;  // of log(x)
-    if (quadratic * step * step < k_round_off_step) return x;
+    if (quadratic * step * step < k_epsilon) return x;
     last = std::abs(step);
   }
   return std::nullopt;

@@ -90,11 +90,6 @@ void add_parameters(const PressureFall& fall, Configuration configuration, std::
 /// does not meet, or whose quantity the law does not have.
 template <class Wall>
 [[nodiscard]] Reach reach_of(const Wall& wall, double radius, const Until& until) {
-  // Range of the search for the displacement that meets a condition: from this share of the limit, where pressures may
-  // be infinite, down to the resolution.
-  constexpr double k_deepest = 0.9;
-  // Bisections that refine the displacement: next to the limit, work may grow by orders over a tenth of the path.
-  constexpr int k_bisections = 20;
   const auto& law = wall.law();
   const double force_unit = wall.unit_force(radius);
   const auto reach_at = [&](double x) { return Reach{x * radius, state_at(law, x).force * force_unit}; };
@@ -113,13 +108,15 @@ template <class Wall>
     return until.value <= 0.0;
   };
   double first = 0.0;
-  // Pressures fall again at greater depth: the search goes on to the least displacement that meets the condition.
-  for (double x = k_deepest * law.limit; x > 0.5 * k_resolution; x *= 0.5) {
+  // Pressures fall again at greater depth: the search goes on to the least displacement that meets the condition, down
+  // to the resolution.
+  for (double x = k_far_from_limit * law.limit; x > 0.5 * k_resolution; x *= 0.5) {
     if (is_met(x)) first = x;
   }
   if (first == 0.0) return {k_infinity, k_infinity};
   double before = 0.5 * first;
-  for (int k = 0; k < k_bisections; ++k) {
+  // Next to the limit, work may grow by orders over a tenth of the path.
+  for (int k = 0; k < k_most_halvings; ++k) {
     const double middle = std::midpoint(before, first);
     (is_met(middle) ? first : before) = middle;
   }

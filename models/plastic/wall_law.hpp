@@ -34,6 +34,10 @@
 
 namespace monograin::plastic {
 
+/// Share of a law's limit up to which scales and conditions are sought: at the limit itself the pressure of an enclosed
+/// particle may be infinite.
+inline constexpr double k_far_from_limit = 0.9;
+
 /// Properties of a contact that its law does not hold.
 struct Settings {
   double strength = 0.0;  ///< S [Pa], > 0
@@ -207,8 +211,6 @@ contacts::Magnitudes WallLaw<Law>::magnitudes(double reach) const {
   // Least typical depth over R0: shallower contacts have too few digits where a ramp prescribes the wall's
   // displacement.
   constexpr double k_least_typical = 1e-7;
-  // Share of a law's limit that sets scales: at the limit itself the pressure of an enclosed particle may be infinite.
-  constexpr double k_far_from_limit = 0.9;
   const bool is_known = settings_.reach.displacement > 0.0 || settings_.reach.force > 0.0;
   reach = is_known ? std::min(reach, k_far_from_limit * law_.limit) : 0.5 * law_.limit;
   // A yield point makes the range before it count, too.

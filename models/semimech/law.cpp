@@ -151,9 +151,8 @@ Material make_material(double youngs_modulus, double poisson_ratio, double yield
 }
 
 bool is_in_fitted_range(double value, double lower, double upper) noexcept {
-  // Half a dozen products, differences and unit conversions, each rounded once.
-  constexpr double round_off = 16.0 * k_epsilon;
-  return value >= lower * (1.0 - round_off) && value <= upper * (1.0 + round_off);
+  // Half a dozen products, differences and unit conversions have four times the round-off of a few operations.
+  return value >= lower * (1.0 - 4.0 * k_round_off) && value <= upper * (1.0 + 4.0 * k_round_off);
 }
 
 std::vector<OutOfRange> outside_calibration(double youngs_modulus, double poisson_ratio, double yield_stress,
