@@ -13,8 +13,7 @@ using std::numbers::pi;
 
 // Least slope of an edge's equilibrium, over A/b: the slope goes with the root of the distance from pull-off, and
 // displacements are rounded.
-constexpr double k_root_of_round_off = 5e-9;
-constexpr int k_most_corrections = 100;  // a double root at pull-off only halves the error each time
+constexpr double k_least_slope_of_edge = 5e-9;
 
 /// Edge at the radius a on a profile; on the ellipse a = b sin(theta).
 struct ProfileEdge {
@@ -70,7 +69,7 @@ double slope(const Indenter& indenter, double stretch, double control_factor, co
 /// Slope of an edge's equilibrium under displacement control. It is zero at pull-off, and no less here than its
 /// round-off.
 double slope_off_pull_off(const Indenter& indenter, double stretch, const ProfileEdge& edge) noexcept {
-  const double least = k_root_of_round_off * indenter.height / indenter.half_width;
+  const double least = k_least_slope_of_edge * indenter.height / indenter.half_width;
   return std::max(least, slope(indenter, stretch, control_factor(Control::displacement), edge));
 }
 
@@ -93,7 +92,7 @@ ProfileEdge descend(const Indenter& indenter, const Adhesion& adhesion, const Ed
   const double most = indenter.is_parabola() ? k_infinity : 1.0;
   const double least = edge_at(indenter, range.down_to).rise;
   ProfileEdge edge = edge_at_rise(indenter, std::min(edge_at(indenter, range.from).rise, most));
-  for (int iteration = 0; iteration < k_most_corrections; ++iteration) {
+  for (int iteration = 0; iteration < k_most_newton_steps; ++iteration) {
     const double stretch = unit_stretch * std::sqrt(edge.share);
     const double by_rise =
         0.5 * indenter.height - 0.5 * control_factor * stretch * edge.cosine / (edge.share * edge.share);
@@ -201,7 +200,7 @@ double critical_radius(const Indenter& indenter, const Adhesion& adhesion, Contr
   if (indenter.is_parabola()) return parabola;
   // a^3 + k a^2 - k b^2 = 0: convex, with one positive root, below both of these. Boost 1.74 solves no cubics.
   double a = std::min(parabola, b);
-  for (int iteration = 0; iteration < k_most_corrections && a > 0.0; ++iteration) {
+  for (int iteration = 0; iteration < k_most_newton_steps && a > 0.0; ++iteration) {
     const double step = (a * a * a - k * (b - a) * (b + a)) / (a * (3.0 * a + 2.0 * k));
     a -= step;
     if (!(std::abs(step) > 1e-16 * a)) break;

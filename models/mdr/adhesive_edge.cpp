@@ -2,11 +2,10 @@
 
 #include <cmath>
 
+#include "system/resolution.hpp"
+
 namespace monograin::mdr {
 namespace {
-
-// Displacement of a sticking edge, over its radius, that is round-off.
-constexpr double k_edge_round_off = 1e-8;
 
 /// Displacement of the springs at a sticking edge, negative where they are stretched, over the stretch that tears them,
 /// plus an offset. An edge of zero radius has no springs: gives the displacement itself.
@@ -35,7 +34,7 @@ AdhesiveEdge AdhesiveEdge::set_back(const Indenter& indenter, double displacemen
   // of zero radius stays, because the comparison is false for it.
   const double steepness = (profile_height(indenter, radius) - profile_height(indenter, 0.5 * radius)) / (0.5 * radius);
   const double distance = displacement_1d / steepness;
-  return distance < k_edge_round_off * radius ? AdhesiveEdge{motion, radius - distance} : *this;
+  return distance < k_root_of_round_off * radius ? AdhesiveEdge{motion, radius - distance} : *this;
 }
 
 Contact peeling_contact(const Image& image, const Adhesion& adhesion, const PullOff& pull_off,

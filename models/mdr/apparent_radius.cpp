@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/resolution.hpp"
+
 namespace monograin::mdr {
-namespace {
-
-// Round-off of the squared sine of half the angle between opposite walls, which is 1.
-constexpr double k_opposite = 5e-13;
-
-}  // namespace
+namespace {}  // namespace
 
 bool opens_gate(RadiusRule rule, const ContactMotion& drive) noexcept {
   // A contact whose wall keeps its distance from the centre displaces no volume.
@@ -42,7 +39,8 @@ std::vector<CapPair> cap_pairs_of(std::span<const ContactClass> classes) {
           half_sine = std::min(half_sine, 0.5 * (classes[i].normals[m] - classes[j].normals[n]).norm());
         }
       }
-      if (half_sine * half_sine < 1.0 - k_opposite) {
+      // Between opposite walls the squared sine is 1.
+      if (half_sine * half_sine < 1.0 - k_same_value) {
         pairs.push_back({static_cast<int>(i), static_cast<int>(j), half_sine});
       }
     }

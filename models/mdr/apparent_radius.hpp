@@ -117,19 +117,17 @@ class VolumeSum {
   /// The balance of all contacts that have been added.
   [[nodiscard]] const VolumeBalance& finish(double growth) noexcept {
     const double radius = 1.0 + growth;
-    sum_.value = growth * (1.0 + growth * (1.0 + k_third * growth)) - k_twelfth * caps_ +
-                 2.0 * k_third * w_ / (1.0 + root_of_discriminant_);
+    // Factors instead of divisors, which would be a good part of the cost of summing up.
+    sum_.value = growth * (1.0 + growth * (1.0 + (1.0 / 3.0) * growth)) - (1.0 / 12.0) * caps_ +
+                 (2.0 / 3.0) * w_ / (1.0 + root_of_discriminant_);
     sum_.by_radius_at_rest = by_radius_ + (radius * radius - 0.5 * radius * overlaps_);
     sum_.by_radius = sum_.by_radius_at_rest + by_radius_through_walls_;
     return sum_;
   }
 
  private:
-  // Factors instead of divisors, which would be a good part of the cost of summing up.
   static constexpr double k_per_solid_angle = 0.25 * std::numbers::inv_pi;
   static constexpr double k_scale = 3.0 * k_per_solid_angle;
-  static constexpr double k_third = 1.0 / 3.0;
-  static constexpr double k_twelfth = 1.0 / 12.0;
 
   double w_ = 0.0;  ///< over the contacts in Q
   double root_of_discriminant_ = 1.0;

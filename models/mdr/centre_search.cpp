@@ -14,10 +14,6 @@
 namespace monograin::mdr {
 namespace {
 
-constexpr int k_newton_limit = 60;
-constexpr int k_most_halvings = 40;
-// Longest Newton step (over R0) with the contacts' own stiffnesses; contacts below the resolution give longer ones.
-constexpr double k_out_of_bounds = 1.0;
 // Length of a step, over the accepted part of the last one, at most.
 constexpr double k_most_growth = 64.0;
 // Trials for the state where contacts begin to hold the centre: nearest and farthest distance from the saddle (over
@@ -25,7 +21,6 @@ constexpr double k_most_growth = 64.0;
 constexpr double k_nearest_saddle = 1e-13;
 constexpr double k_farthest_saddle = 1e-2;
 constexpr double k_longer = 1.25;
-constexpr int k_most_sections = 40;
 // Softenings at a fold are equal if they differ by less than this share of their sum. The place of the centre there is
 // accurate to the root of the integration error.
 constexpr double k_alike = 1e-2;
@@ -38,7 +33,7 @@ template <class Function>
 double search_maximum(double a, double b, double& best, Function&& function) {
   const double section = 2.0 - std::numbers::phi;
   double largest = function(best);
-  for (int k = 0; k < k_most_sections && largest <= 0.0; ++k) {
+  for (int k = 0; k < k_most_halvings && largest <= 0.0; ++k) {
     const double to = std::abs(b - best) > std::abs(best - a) ? b : a;
     const double trial = best + section * (to - best);
     const double value = function(trial);
@@ -110,7 +105,7 @@ class BalanceSearch {
 
   /// @throws std::domain_error where no balance is found
   void run() {
-    for (int iteration = 0; iteration < k_newton_limit && !is_stuck(); ++iteration) {
+    for (int iteration = 0; iteration < k_most_newton_steps && !is_stuck(); ++iteration) {
       error_ = p_.centre().force().norm();
       if (error_ == 0.0) return;
       noise_ = p_.force_round_off();
@@ -128,8 +123,9 @@ class BalanceSearch {
 
   [[nodiscard]] CentreVector newton_step() const {
     const CentreVector step = p_.centre().step();
-    // Contacts below the resolution are so soft that the step has no bound; regularized stiffnesses have a least value.
-    return step.norm() > k_out_of_bounds ? p_.centre().regularized_step() : step;
+    // Contacts below the resolution are so soft that the step may be longer than R0; regularized stiffnesses have a
+    // least value.
+    return step.norm() > 1.0 ? p_.centre().regularized_step() : step;
   }
 
   /// True if a Newton step of that length is round-off, so that the search has converged.

@@ -17,9 +17,6 @@
 namespace monograin::mdr {
 namespace {
 
-// Share of a force that round-off may leave unbalanced at the overlap found for it: the contact area is a difference.
-constexpr double k_force_round_off = 1e-10;
-
 using std::numbers::pi;
 
 // Angle from which on theta - sin(theta) cos(theta) loses no digits.
@@ -339,7 +336,7 @@ double plastic_overlap(const Material& material, double radius, double force, do
   double high = radius;
   double overlap = std::clamp(guess, low + k_inside * (radius - low), (1.0 - k_inside) * radius);
   double last_step = k_infinity;
-  for (int iteration = 0; iteration < 100; ++iteration) {
+  for (int iteration = 0; iteration < k_most_newton_steps; ++iteration) {
     const Contact contact = plastic_contact(material, radius, overlap, area_constant);
     const double missing = force - contact.force;
     const bool is_rising = contact.by_overlap > 0.0;
@@ -355,7 +352,7 @@ double plastic_overlap(const Material& material, double radius, double force, do
       continue;
     }
     // If the prescribed force exceeds the largest one, the search ends at the overlap of the largest one.
-    if (is_outside && missing > k_force_round_off * force) break;
+    if (is_outside && missing > k_no_net_force * force) break;
     return overlap;
   }
   throw DomainError(Limit::greatest_force);

@@ -6,13 +6,6 @@
 #include "mdr/idle.hpp"
 
 namespace monograin::mdr {
-namespace {
-
-// Distance (of the guard from zero) from which on caps that have met have parted.
-constexpr double k_parted = 1e-6;
-
-}  // namespace
-
 bool ContactCaps::both_touch(const Particle& p, std::size_t pair) const noexcept {
   return p.branch(static_cast<std::size_t>(pairs_[pair].first)).touches() &&
          p.branch(static_cast<std::size_t>(pairs_[pair].second)).touches();
@@ -36,9 +29,7 @@ void ContactCaps::set_largest_angles(const Particle& p) {
   }
 }
 
-bool ContactCaps::may_meet(std::size_t pair) const noexcept {
-  return !(guard_at(largest_angles_, pair) < -k_out_of_reach);
-}
+bool ContactCaps::may_meet(std::size_t pair) const noexcept { return !(guard_at(largest_angles_, pair) < -k_together); }
 
 std::optional<DomainEnd> ContactCaps::meet(std::size_t pair, double growth, std::vector<Event>& log) {
   CapPair& caps = pairs_[pair];
@@ -55,7 +46,7 @@ std::optional<DomainEnd> ContactCaps::meet_at_once(const Particle& p, std::vecto
   set_angles(p);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const double distance = both_touch(p, k) ? guard(k) : -1.0;
-    if (distance < -k_parted) pairs_[k].have_met = false;
+    if (distance < -k_together) pairs_[k].have_met = false;
     if (distance < -k_zero_guard || pairs_[k].have_met) continue;
     if (const auto limit = meet(k, p.at().growth, log)) end = limit;
   }

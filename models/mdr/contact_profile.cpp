@@ -106,8 +106,6 @@ double ContactProfile::relaxed_height(double r) const {
 }
 
 std::vector<SurfacePoint> surface_of(const ContactProfile& profile) {
-  constexpr int k_points = 128;    // points within the contact, and as many around it
-  constexpr double k_reach = 2.0;  // distance of the last point from the axis, over the contact radius
   std::vector<SurfacePoint> points;
   const double a = profile.contact_radius;
   const auto add = [&](double r) {
@@ -116,11 +114,12 @@ std::vector<SurfacePoint> surface_of(const ContactProfile& profile) {
                       .displacement = profile.surface_displacement(r),
                       .relaxed_height = profile.relaxed_height(r)});
   };
-  // Points crowd towards the edge from both sides, because slopes are unbounded there; none lies at the edge itself.
-  for (int k = 0; k < k_points; ++k) add(a * std::sin(0.5 * pi * k / k_points));
-  for (int k = 1; k <= k_points; ++k) {
-    const double share = static_cast<double>(k) / k_points;
-    add(a * (1.0 + (k_reach - 1.0) * share * share));
+  // As many points around the contact, up to twice its radius, as within. They crowd towards the edge from both sides,
+  // because slopes are unbounded there; none lies at the edge itself.
+  for (int k = 0; k < k_surface_points; ++k) add(a * std::sin(0.5 * pi * k / k_surface_points));
+  for (int k = 1; k <= k_surface_points; ++k) {
+    const double share = static_cast<double>(k) / k_surface_points;
+    add(a * (1.0 + share * share));
   }
   return points;
 }

@@ -12,7 +12,6 @@
 namespace monograin::mdr {
 namespace {
 
-constexpr int k_most_steps = 60;
 // Step of the growing radius after which Newton's next one is round-off, if the equations are smooth.
 constexpr double k_smooth_last_step = 1e-10;
 // Longest step of the growing radius (over R0).
@@ -115,7 +114,7 @@ void grow(Particle& p, double xi, std::span<double> y) {
   // Quadratic convergence makes the next step round-off below this. Convergence is slower where forces go with a square
   // root: for an idle contact of a free centre, or an edge next to pull-off.
   const double last_step = !p.centre().is_free() && !peels_anywhere(p) ? k_smooth_last_step : 2.0 * k_epsilon;
-  for (int iteration = 0; iteration < k_most_steps; ++iteration) {
+  for (int iteration = 0; iteration < k_most_newton_steps; ++iteration) {
     move_walls(p, xi, y);
     p.evaluate(xi, y);
     GrowthStep step = newton_step(p);

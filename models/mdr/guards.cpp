@@ -144,7 +144,7 @@ void GuardSet::add_if_reached(const Particle& p, std::size_t i, const Course& co
   const bool is_by_force = p.is_force_controlled(i) && (kind == k_made || kind == k_dent_touched || kind == k_lost);
   const double last_overlap = p.drive(i).end() + p.at().growth;
   const bool is_known = is_linear || is_by_force;
-  if (is_known && direction * contact_guard(p, kind, i, 1.0, last_overlap) < -k_out_of_reach) return;
+  if (is_known && direction * contact_guard(p, kind, i, 1.0, last_overlap) < -k_together) return;
   list_.push_back({kind, static_cast<int>(i), direction, name});
 }
 
@@ -200,7 +200,7 @@ void GuardSet::arm_edge(const Particle& p, std::size_t i, const Course& course) 
     case Edge::sticking: {
       // If the overlap cannot turn, an edge that has stuck since the largest overlap follows again with the reload.
       const double at_largest = edge_guard(p, k_follow, i, 0.0, branch.largest_overlap(p.law(), p.at().growth));
-      if (course.may_come_in && (course.may_turn || at_largest > k_out_of_reach))
+      if (course.may_come_in && (course.may_turn || at_largest > k_together))
         list_.push_back({k_follow, index, 1, "follow"});
       if (course.may_go_out) list_.push_back({k_peel, index, -1, "peel"});
       break;
@@ -229,9 +229,9 @@ void GuardSet::arm_tension(const Particle& p, std::size_t i, const Motion& now, 
   };
   const bool is_tensile = p.contact(i).contact.force < 0.0;
   const double rate = force_rate(p, i, now);
-  if (!is_tensile || rate < -0.5 * k_steady_force) return add(k_greatest_tension, 1);
+  if (!is_tensile || rate < -0.5 * k_at_rest) return add(k_greatest_tension, 1);
   if (!course.may_turn) return;
-  if (rate > 0.5 * k_steady_force) return add(k_least_tension, -1);
+  if (rate > 0.5 * k_at_rest) return add(k_least_tension, -1);
   // A force at rest passes no extremum when it begins to change: these two guards only show which one comes next.
   add(k_tension_falls, 1);
   add(k_tension_rises, -1);
@@ -245,13 +245,13 @@ double tension_guard(const Particle& p, int kind, std::size_t i, const Motion& n
   const bool pulls = p.contact(i).contact.force < 0.0;
   switch (kind) {
     case k_greatest_tension:
-      return (pulls ? rate : -std::abs(rate)) - k_steady_force;
+      return (pulls ? rate : -std::abs(rate)) - k_at_rest;
     case k_least_tension:
-      return (pulls ? rate : std::abs(rate)) + k_steady_force;
+      return (pulls ? rate : std::abs(rate)) + k_at_rest;
     case k_tension_falls:
-      return rate - k_steady_force;
+      return rate - k_at_rest;
   }
-  return rate + k_steady_force;  // k_tension_rises
+  return rate + k_at_rest;  // k_tension_rises
 }
 
 double retreat_guard(Particle& p, std::size_t i, double xi, std::span<const double> y, const Motion& now) {

@@ -49,14 +49,13 @@ enum GuardKind : int {
   k_centre_reached   ///< distance of a wall from the centre [R0]: <= 0
 };
 
-/// Rate of a contact's force, in the unit of force_rate(), that is round-off.
-inline constexpr double k_steady_force = 1e-9;
-/// Rate, of order one elsewhere, below which a wall or an edge is at rest: just after it has turned, its rate is an
-/// error of integration.
-inline constexpr double k_at_rest = 1e-8;
-/// With a free centre, contacts along its directions open and close together; their guards agree to the integration
-/// error only.
+/// Distance of a guard from zero that may be an error of integration. Contacts along the directions of a free centre
+/// open and close together, but their guards agree only to this. Where its course is known, a guard that ends farther
+/// from zero does not fire.
 inline constexpr double k_together = 1e-6;
+/// Rate, of order one elsewhere, below which a wall or an edge is at rest: just after it has turned, its rate is an
+/// error of integration, which k_at_rest does not cover.
+inline constexpr double k_just_turned = 1e-8;
 /// Growth ends where the free surface falls below this share of the particle's surface.
 inline constexpr double k_least_slope = 1e-3;
 /// A plastic contact under a prescribed force has reached its largest force when its stiffness is this share of that of
@@ -73,9 +72,6 @@ inline constexpr double k_last_stiffness = 1e-2;
 /// Round-off of the overlap at which a sticking edge follows again. An edge that has just come to stick leaves that
 /// overlap with the square of its displacement; subtracting this keeps round-off from firing the guard.
 [[nodiscard]] double edge_round_off(const Particle& p, std::size_t i);
-
-/// Value of a guard, away from zero, from which on it cannot fire in a step whose course is known.
-inline constexpr double k_out_of_reach = 1e-9;
 
 /// Set of the guards that are alive until the next transition or the end of the step.
 class GuardSet {

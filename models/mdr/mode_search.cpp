@@ -150,7 +150,7 @@ bool ModeSearch::is_void(const Guard& guard, const Motion& now) const {
     case k_turn:
       return has_another_edge();
     case k_follow:
-      return has_another_edge() || edge_rate(p_, i, now) <= k_at_rest;
+      return has_another_edge() || edge_rate(p_, i, now) <= k_just_turned;
     case k_reload: {
       // On a branch as short as the guard's tolerance, the guard fires far from the end of the branch: no reload there.
       if (branch.regime != Regime::unloading) return false;
@@ -235,11 +235,11 @@ bool ModeSearch::apply_transition(const Guard& guard, std::span<double> y, const
 }
 
 /// Tears the springs at a sticking edge, unless round-off has fired the guard: a contact that moves together with much
-/// stiffer ones has a rate of few digits, and a rate below k_at_rest is no motion. Such an edge has just turned and
+/// stiffer ones has a rate of few digits, and a rate below k_just_turned is no motion. Such an edge has just turned and
 /// leaves the verge of peeling with the square of its displacement; it is set back, or its guard would fire again.
 /// @return whether the springs tear
 bool ModeSearch::peel_or_set_back(std::size_t i, std::span<double> y, const Motion& now, std::vector<Event>& log) {
-  if (edge_rate(p_, i, now) < -k_at_rest && std::abs(overlap_rate(p_, i, now)) > k_at_rest) {
+  if (edge_rate(p_, i, now) < -k_just_turned && std::abs(overlap_rate(p_, i, now)) > k_just_turned) {
     start_peeling(i, y, log);
     return true;
   }
@@ -282,7 +282,7 @@ bool ModeSearch::is_extremum(const Guard& guard, const Motion& now) const {
   const ContactBranch& branch = p_.branch(i);
   if (branch.edge.motion != edges_before_[i] || !branch.touches() || !(p_.contact(i).contact.force < 0.0)) return false;
   return guard.kind == k_greatest_tension ||
-         (guard.kind == k_least_tension && force_rate(p_, i, now) > -2.0 * k_steady_force);
+         (guard.kind == k_least_tension && force_rate(p_, i, now) > -2.0 * k_at_rest);
 }
 
 // --- deciding a mode
@@ -565,7 +565,7 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
   const double passed = tends.advances ? contact_guard(p_, k_reload, i, xi, overlap) : -1.0;
   if (passed >= -k_zero_guard) {
     // The rate of a contact that has turned at this instant is round-off, of either sign: the contact does not reload.
-    if (!has_turned_[i] || primary_branch_rate(p_, i, now) > k_at_rest || passed > k_zero_guard) {
+    if (!has_turned_[i] || primary_branch_rate(p_, i, now) > k_just_turned || passed > k_zero_guard) {
       loads_again_[i] = has_turned_[i];
       p_.set_branch(i, p_.branch(i).reloaded());
       log.push_back(event_of("reload", i));
@@ -590,14 +590,14 @@ bool ModeSearch::resolve_below_largest(std::size_t i, double xi, std::span<doubl
 bool ModeSearch::resolve_edge(std::size_t i, double xi, std::span<double> y, const Motion& now,
                               bool is_pressed_by_growth, std::vector<Event>& log) {
   const double rate = edge_rate(p_, i, now);
-  const bool moves_in = rate > k_at_rest || is_pressed_by_growth;
-  const bool moves_out = rate < -k_at_rest && !is_pressed_by_growth;
+  const bool moves_in = rate > k_just_turned || is_pressed_by_growth;
+  const bool moves_out = rate < -k_just_turned && !is_pressed_by_growth;
   const double overlap = p_.contact(i).overlap;
   const auto is_past = [&](GuardKind kind, double sign) {
     return sign * edge_guard(p_, kind, i, xi, overlap) >= -k_zero_guard;
   };
   // The rate of a contact that has turned at this instant is round-off, of either sign: its edge is at rest.
-  const bool is_at_rest = has_turned_[i] && std::abs(overlap_rate(p_, i, now)) <= k_at_rest;
+  const bool is_at_rest = has_turned_[i] && std::abs(overlap_rate(p_, i, now)) <= k_just_turned;
   switch (p_.branch(i).edge.motion) {
     case Edge::following:
       if (!moves_out) return false;

@@ -8,13 +8,7 @@
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
-namespace {
-
-// A contact under force has reached pull-off when its contact radius is this near to that at pull-off (relative to the
-// latter). Forces differ by the square of this, which is below their round-off.
-constexpr double k_at_pull_off = 1e-9;
-
-}  // namespace
+namespace {}  // namespace
 
 Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)), drives_(setup_->classes.size()) {
   const std::size_t count = setup_->classes.size();
@@ -200,7 +194,7 @@ void Particle::set_rates_under_force(std::size_t i) {
     // At pull-off the force no longer determines the displacement: the overlap hardly changes with the radius.
     const Indenter indenter = branch.image(law(), at_.growth, now.overlap).indenter;
     const double critical = branch.pull_off(law(), indenter).by_force.contact_radius;
-    if (c.contact_radius <= (1.0 + k_at_pull_off) * critical) {
+    if (c.contact_radius <= (1.0 + k_root_of_round_off) * critical) {
       now.rate_by_growth = -1.0;
       return;
     }

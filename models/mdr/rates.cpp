@@ -85,7 +85,7 @@ bool gate_is_open(const Particle& p, const Motion& motion) {
     if (!p.takes_part(i)) continue;
     // Next to stiff contacts the rate of an idle contact loses digits.
     const ContactMotion drive{.inward_rate = inward_rate(p, i, motion),
-                              .least_rate = (is_idle(p, i) ? k_at_rest : k_zero_guard) * p.speed_scale(),
+                              .least_rate = (is_idle(p, i) ? k_just_turned : k_zero_guard) * p.speed_scale(),
                               .is_force_controlled = p.is_force_controlled(i),
                               .rises = p.drive(i).rate() > 0.0,
                               .is_on_primary_branch = p.branch(i).is_on_primary_branch};

@@ -37,10 +37,12 @@ struct Settings {
   Reach reach{};
 };
 
-// Indices of the unknowns in y.
-inline constexpr std::size_t k_growth = 0;  ///< (R - R0)/R0
-inline constexpr std::size_t k_work = 1;
-inline constexpr std::size_t k_centre = 2;  ///< first free direction of the centre; the others follow
+/// Indices of the unknowns in y.
+enum UnknownIndex : std::size_t {
+  k_growth,  ///< (R - R0)/R0
+  k_work,
+  k_centre  ///< first free direction of the centre; the others follow
+};
 [[nodiscard]] constexpr std::size_t centre_index(int k) noexcept { return k_centre + static_cast<std::size_t>(k); }
 /// Displacement of the centre in a state.
 [[nodiscard]] CentreVector centre_of(std::span<const double> y, int free_directions) noexcept;

@@ -20,12 +20,6 @@
 namespace monograin::mdr {
 namespace {
 
-// Unbalanced share of the push at which overlaps_under_push() has converged.
-constexpr double k_balanced = 1e-10;
-// Gap, over the displacement of the centre under a push, from which on the centre has left a wall.
-constexpr double k_moved_away = 1e-6;
-constexpr int k_most_steps_of_search = 200;
-
 /// Wall of an idle contact: it can push a free centre, but not pull it.
 struct IdleWall {
   std::size_t contact = 0;
@@ -61,7 +55,7 @@ std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<c
       sum += 0.4 * weights[k] * std::pow(std::max(0.0, measured[k].dot(at)), 2.5);
     return sum;
   };
-  for (int iteration = 0; iteration < k_most_steps_of_search; ++iteration) {
+  for (int iteration = 0; iteration < k_most_newton_steps; ++iteration) {
     Eigen::Vector3d slope = load;
     Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
     for (std::size_t k = 0; k < measured.size(); ++k) {
@@ -69,12 +63,12 @@ std::vector<double> overlaps_under_push(const Eigen::Vector3d& push, std::span<c
       slope += weights[k] * root * root * root * measured[k];
       stiffness += 1.5 * weights[k] * root * measured[k] * measured[k].transpose();
     }
-    if (slope.norm() < k_balanced) break;
+    if (slope.norm() < k_no_net_force) break;
     // Without overlaps there is no stiffness; adding the size of the slope keeps the step finite.
     stiffness.diagonal().array() += slope.norm();
     Eigen::Vector3d step = -stiffness.ldlt().solve(slope);
     const double before = energy(path);
-    while (energy(path + step) >= before && step.norm() > k_balanced * path.norm()) step *= 0.5;
+    while (energy(path + step) >= before && step.norm() > k_no_net_force * path.norm()) step *= 0.5;
     path += step;
   }
   std::vector<double> overlaps;
@@ -186,7 +180,7 @@ bool lose_unpressed(Particle& p, std::span<const IdleWall> walls, double xi, std
   bool has_left = false;
   for (std::size_t k = 0; k < walls.size(); ++k) {
     const std::size_t i = walls[k].contact;
-    if (!(overlaps[k] < -k_moved_away)) continue;
+    if (!(overlaps[k] < -k_no_direction)) continue;
     p.lose(i);
     is_left[i] = true;
     log.push_back({"contact-lost", static_cast<int>(i)});
@@ -316,7 +310,7 @@ bool lose_idle_contacts(Particle& p, double xi, std::span<const double> y, std::
   }
   if (!velocity) return false;
   // Next to stiff contacts these rates lose digits. A contact that opens more slowly is lost later, by its guard.
-  const double least = -k_at_rest * (1.0 + velocity->norm());
+  const double least = -k_just_turned * (1.0 + velocity->norm());
   bool has_left = false;
   for (const IdleWall& wall : walls) {
     const std::size_t i = wall.contact;

@@ -137,7 +137,7 @@ std::optional<DomainEnd> System::reach_centre_at_once(double xi, std::span<const
   for (std::size_t i = 0; i < now_.particle.size(); ++i) {
     if (1.0 - at.contacts[i].approach > contacts::k_least_distance) continue;
     const Motion now = now_.particle.motion(now_.particle.mode.is_growing);
-    if (wall_rate(now_.particle, i, now) > k_at_rest) return centre_reached(static_cast<int>(i));
+    if (wall_rate(now_.particle, i, now) > k_just_turned) return centre_reached(static_cast<int>(i));
   }
   return std::nullopt;
 }

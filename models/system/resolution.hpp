@@ -13,6 +13,9 @@ inline constexpr double k_epsilon = std::numeric_limits<double>::epsilon();
 
 /// Relative round-off of a value that comes from a few operations.
 inline constexpr double k_round_off = 4.0 * k_epsilon;
+/// Relative change of a value whose square is round-off: a quantity that is stationary there does not show it, and a
+/// step of Newton's method of that size is the last one.
+inline constexpr double k_root_of_round_off = 1e-8;
 /// Relative difference of two computed values that are equal: their round-off adds up over some thousand operations.
 inline constexpr double k_same_value = 1e-12;
 /// Relative difference of two numbers of a scenario that are equal: people write them with fewer digits.
