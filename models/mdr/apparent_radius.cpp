@@ -6,7 +6,6 @@
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
-namespace {}  // namespace
 
 bool opens_gate(RadiusRule rule, const ContactMotion& drive) noexcept {
   // A contact whose wall keeps its distance from the centre displaces no volume.

@@ -6,6 +6,7 @@
 #include "mdr/idle.hpp"
 
 namespace monograin::mdr {
+
 bool ContactCaps::both_touch(const Particle& p, std::size_t pair) const noexcept {
   return p.branch(static_cast<std::size_t>(pairs_[pair].first)).touches() &&
          p.branch(static_cast<std::size_t>(pairs_[pair].second)).touches();

@@ -8,7 +8,6 @@
 #include "system/resolution.hpp"
 
 namespace monograin::mdr {
-namespace {}  // namespace
 
 Particle::Particle(std::shared_ptr<const Setup> setup) : setup_(std::move(setup)), drives_(setup_->classes.size()) {
   const std::size_t count = setup_->classes.size();
