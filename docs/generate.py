@@ -971,10 +971,11 @@ def declarations_of(xml, header):
             break
     else:
         fail(f"doxygen has not read {header}")
-    parts = []
     # Namespaces by the file of their description.
     namespaces = {name.text: compound.get("refid") for compound in index.iter("compound")
                   for name in [compound.find("name")] if compound.get("kind") == "namespace"}
+    spaces = sorted({inner.text.rpartition("::")[0] for inner in file.findall("innerclass")} & set(namespaces))
+    parts = [f"Classes are those of namespace {' and '.join(f'`{space}`' for space in spaces)}.\n\n"] if spaces else []
     for inner in file.findall("innerclass"):
         # A mere declaration: the definition stands in another file, or nowhere. A class within a class is a member.
         if inner.get("refid") in kinds and inner.text.rpartition("::")[0] in namespaces:
@@ -993,9 +994,6 @@ def declarations_of(xml, header):
             arguments = member.findtext("argsstring") if kind == "function" and functions.count(name) > 1 else ""
             arguments = re.sub(r"\)[^)]*$", ")", arguments)
             parts.append(f"```{{doxygen{kind}}} {scope}::{name}{arguments}\n```\n\n")
-    spaces = sorted({inner.text.rpartition("::")[0] for inner in file.findall("innerclass")} & set(namespaces))
-    if spaces:
-        parts.insert(0, f"Classes are those of namespace {' and '.join(f'`{space}`' for space in spaces)}.\n\n")
     return parts
 
 

@@ -437,7 +437,8 @@ class Direct final : public EventLocator {
     constexpr double k_just_beyond = 1.001;  // length of a piece that ends just beyond its event, over that up to it
     forget_samples();
     if (begin_.xi == segment_begin_) sample_early();
-    if (!solve_nodes()) return too_long(0.5);
+    const bool has_branches = std::ranges::any_of(branch_reach_, [](double reach) { return std::isfinite(reach); });
+    if (!solve_nodes(has_branches)) return too_long(0.5);
     predictor_.fit();
     Attempt attempt = work_.is_integrated() ? work_.fit(piece(), begin_.state, predictor_.rates()) : Attempt{};
     if (!attempt.is_covered) return attempt;
@@ -445,7 +446,6 @@ class Direct final : public EventLocator {
     locate_event();
     if (has_jumped()) return too_long(k_most_shrinkage);
     const double beyond_event = k_just_beyond * covered_length() / piece().length();
-    const bool has_branches = std::ranges::any_of(branch_reach_, [](double reach) { return std::isfinite(reach); });
     if (has_branches) {
       if (covered_length() > least_progress(begin_.xi) && !predictor_.is_resolved())
         return too_long(std::min(0.5, beyond_event));
@@ -462,7 +462,7 @@ class Direct final : public EventLocator {
 
   /// Solves for the states at the nodes, and evaluates the rates there if the work needs them.
   /// @return false if a state is so far from the beginning that it may lie on another branch of solutions
-  bool solve_nodes() {
+  bool solve_nodes(bool has_branches) {
     const double length = piece().length();
     const LegendreNodes& nodes = predictor_.nodes();
     for (std::size_t j = 0; j < nodes.count; ++j) {
@@ -472,7 +472,7 @@ class Direct final : public EventLocator {
       system_.solve(xi, trial_);
       predictor_.keep_state(j, trial_);
       if (length > k_shortest_sampled && !guard_set_.is_monotone()) sample_inside(xi, trial_);
-      if (length > least_progress(begin_.xi) && share_of_reach(trial_) > 1.0) return false;
+      if (has_branches && length > least_progress(begin_.xi) && share_of_reach(trial_) > 1.0) return false;
       if (!work_.is_integrated()) continue;
       system_.rates(xi, trial_, rates_);
       predictor_.keep_rates(j, rates_);

@@ -293,9 +293,9 @@ class Rows {
 
   /// Passes the line of headings and then that of each run to a sink. All runs have to be finished.
   void for_each_line(const TextSink& sink) {
-    if (columns_.empty()) columns_ = all_columns();
+    const std::vector<std::string> columns = all_columns();
     std::string line = leading_headings(sweep_);
-    for (const std::string& column : columns_) (line += ',') += column;
+    for (const std::string& column : columns) (line += ',') += column;
     sink(line);
     std::unordered_map<std::string, std::vector<std::size_t>> targets;  // columns of each layout's cells
     std::vector<std::string_view> cells;
@@ -305,10 +305,10 @@ class Rows {
       const auto [target, is_new] = targets.try_emplace(layout);
       if (is_new) {
         for (const std::string_view heading : split(layout)) {
-          target->second.push_back(static_cast<std::size_t>(std::ranges::find(columns_, heading) - columns_.begin()));
+          target->second.push_back(static_cast<std::size_t>(std::ranges::find(columns, heading) - columns.begin()));
         }
       }
-      cells.assign(columns_.size(), "nan");
+      cells.assign(columns.size(), "nan");
       const std::vector<std::string_view> own = split(row.cells);
       for (std::size_t k = 0; k < own.size(); ++k) cells[target->second[k]] = own[k];
       line = fmt::format("{}{},{}", leading_cells(sweep_, run), row.status, row.reason);
@@ -349,8 +349,7 @@ class Rows {
 
   const Sweep& sweep_;
   std::vector<SweepRecord> records_;
-  std::vector<Place> places_;           ///< of every run
-  std::vector<std::string> columns_{};  ///< of all runs; empty before the first line
+  std::vector<Place> places_;  ///< of every run
 };
 
 /// Does runs of a sweep.
