@@ -126,7 +126,7 @@ TEST(RunCalculix, SaysWhichSignalEndedCalculix) {
 TEST(RunCalculix, CountsTheInstantsWhileCalculixGoesOn) {
   const SectorProblem problem = die_problem();
   const TemporaryFolder folder;
-  const auto ccx = stand_in(folder, shrunk(problem, 2), "printf ' STEP INC\\n 1 1\\n 2 1\\n' > $1.sta; sleep 0.3\n");
+  const auto ccx = stand_in(folder, shrunk(problem, 2), "printf ' STEP INC\\n 1 1\\n 2 1\\n' > $1.sta; sleep 0.6\n");
   std::size_t most = 0;
   const SectorSolution solution =
       run_calculix(problem, ccx, folder.path(), "job", [&](std::size_t done) { most = std::max(most, done); });

@@ -47,7 +47,7 @@ TEST_F(RunProgram, GivesTheSignalThatEndsTheProgramAsANegativeNumber) { EXPECT_E
 
 TEST_F(RunProgram, CallsBackUntilTheProgramEnds) {
   int calls = 0;
-  EXPECT_EQ(run("sleep 0.25", [&calls] { ++calls; }), 0);
+  EXPECT_EQ(run("sleep 0.6", [&calls] { ++calls; }), 0);
   EXPECT_GE(calls, 2);
 }
 

@@ -4,8 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 
 #include "support/test_run.hpp"
@@ -105,13 +105,13 @@ TEST(SymmetryClasses, OfFiftyWallsTakeNoTime) {
     const double angle = 2.0 * std::numbers::pi * k / 50.0;
     walls.push_back(driven({std::cos(angle), std::sin(angle), 0.0}));
   }
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   EXPECT_EQ(symmetry_classes(walls), Classes(50, 0));
   // One wall with a program of its own leaves the mirror through it: 24 pairs, the wall itself and the one opposite.
   walls[0].steps[0].target = 0.2;
   const Classes classes = symmetry_classes(walls);
   EXPECT_EQ(*std::ranges::max_element(classes), 25u);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  EXPECT_LT(std::clock() - begin, CLOCKS_PER_SEC);
 }
 
 }  // namespace
