@@ -15,7 +15,6 @@
 #include "cli/commands.hpp"
 #include "cli/terminal.hpp"
 #include "history/run.hpp"
-#include "history/table_file.hpp"
 #include "scenario/hidden_path.hpp"
 #include "scenario/scenario.hpp"
 #include "scenario/words.hpp"
@@ -206,7 +205,6 @@ bool names_no_command(const CLI::App& app, int argc, char** argv) {
 int run_program(int argc, char** argv) {
   remove_hidden_paths_at_signals();
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of the system is a fault of writing like others
-  leave_hdf5_files_at_exit();
   CLI::App app("Workbench for the mechanics of a single particle under contact.", "monograin");
   app.set_version_flag("--version", fmt::format("monograin {}", version()));
   app.footer("Example: monograin run --plot");

@@ -3,7 +3,6 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <atomic>
 #include <stdexcept>
 
 #include "history/table_file.hpp"
@@ -20,15 +19,9 @@ namespace {
                   dlerror()));
 }
 
-std::atomic<bool> leaves_files_at_exit = false;
-
 /// The library, loaded by the first call and kept.
 [[nodiscard]] const Hdf5Library& loaded_library() {
-  static const Hdf5Library library = [] {
-    Hdf5Library loaded;
-    if (leaves_files_at_exit) loaded.H5dont_atexit();
-    return loaded;
-  }();
+  static const Hdf5Library library;
   return library;
 }
 
@@ -50,8 +43,6 @@ Hdf5Library::Symbol Hdf5Library::symbol(const char* name) const {
   return {address};
 }
 
-void leave_hdf5_files_at_exit() { leaves_files_at_exit = true; }
-
 void expect_hdf5() { static_cast<void>(loaded_library()); }
 
 Hdf5Calls::Hdf5Calls(std::filesystem::path file, std::string_view problem)
@@ -70,12 +61,6 @@ Hdf5Object Hdf5Calls::text_type(std::size_t bytes, H5T_str_t padding) const {
   check(library.H5Tset_cset(type, H5T_CSET_UTF8));
   check(library.H5Tset_strpad(type, padding));
   return type;
-}
-
-Hdf5Object Hdf5Calls::unlocked_access() const {
-  Hdf5Object access = object(library.H5Pcreate(*library.file_access));
-  check(library.H5Pset_file_locking(access, false, true));
-  return access;
 }
 
 void Hdf5Calls::add_text(hid_t owner, const char* name, const std::string& text) const {

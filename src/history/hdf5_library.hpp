@@ -40,7 +40,6 @@ class Hdf5Library {
   void* library_;
 
  public:
-  decltype(&::H5dont_atexit) H5dont_atexit = symbol("H5dont_atexit");
   decltype(&::H5open) H5open = symbol("H5open");
   decltype(&::H5free_memory) H5free_memory = symbol("H5free_memory");
   decltype(&::H5Acreate2) H5Acreate2 = symbol("H5Acreate2");
@@ -55,6 +54,7 @@ class Hdf5Library {
   decltype(&::H5Dwrite) H5Dwrite = symbol("H5Dwrite");
   decltype(&::H5Eset_auto2) H5Eset_auto2 = symbol("H5Eset_auto2");
   decltype(&::H5Ewalk2) H5Ewalk2 = symbol("H5Ewalk2");
+  decltype(&::H5FDregister) H5FDregister = symbol("H5FDregister");
   decltype(&::H5Fclose) H5Fclose = symbol("H5Fclose");
   decltype(&::H5Fcreate) H5Fcreate = symbol("H5Fcreate");
   decltype(&::H5Fopen) H5Fopen = symbol("H5Fopen");
@@ -64,9 +64,11 @@ class Hdf5Library {
   decltype(&::H5Iget_type) H5Iget_type = symbol("H5Iget_type");
   decltype(&::H5Oopen_by_idx) H5Oopen_by_idx = symbol("H5Oopen_by_idx");
   decltype(&::H5Pcreate) H5Pcreate = symbol("H5Pcreate");
+  decltype(&::H5Pget_driver_info) H5Pget_driver_info = symbol("H5Pget_driver_info");
   decltype(&::H5Pset_chunk) H5Pset_chunk = symbol("H5Pset_chunk");
   decltype(&::H5Pset_chunk_cache) H5Pset_chunk_cache = symbol("H5Pset_chunk_cache");
   decltype(&::H5Pset_deflate) H5Pset_deflate = symbol("H5Pset_deflate");
+  decltype(&::H5Pset_driver) H5Pset_driver = symbol("H5Pset_driver");
   decltype(&::H5Pset_file_locking) H5Pset_file_locking = symbol("H5Pset_file_locking");
   decltype(&::H5Pset_link_creation_order) H5Pset_link_creation_order = symbol("H5Pset_link_creation_order");
   decltype(&::H5Pset_obj_track_times) H5Pset_obj_track_times = symbol("H5Pset_obj_track_times");
@@ -136,8 +138,6 @@ class Hdf5Calls {
   [[nodiscard]] Hdf5Object text_type(std::size_t bytes) const;
   /// Text of the length of each, for attributes.
   [[nodiscard]] Hdf5Object variable_text_type() const;
-  /// Access to a file without a lock, which some network file systems refuse.
-  [[nodiscard]] Hdf5Object unlocked_access() const;
   /// Adds an attribute to a file or a dataset.
   void add_text(hid_t owner, const char* name, const std::string& text) const;
   /// Text of an attribute. @throws std::runtime_error as check(), and if it is not one text

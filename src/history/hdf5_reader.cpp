@@ -118,7 +118,8 @@ void add_columns(const Hdf5Calls& calls, hid_t group, bool is_top, std::vector<C
 
 Table read_hdf5(const fs::path& file) {
   const Hdf5Calls calls(file, "cannot be read as a table in HDF5");
-  const Hdf5Object access = calls.unlocked_access();
+  const Hdf5Object access = calls.object(calls.library.H5Pcreate(*calls.library.file_access));
+  calls.check(calls.library.H5Pset_file_locking(access, false, true));  // some network file systems refuse a lock
   const Hdf5Object whole = calls.object(calls.library.H5Fopen(file.c_str(), H5F_ACC_RDONLY, access));
   std::vector<ColumnReader> columns;
   add_columns(calls, whole, true, columns);

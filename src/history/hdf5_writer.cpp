@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "history/hdf5_library.hpp"
+#include "history/hdf5_output.hpp"
 #include "history/table_file.hpp"
 #include "system/resolution.hpp"
 
@@ -177,8 +177,10 @@ void write_hdf5(const fs::path& file, const Hdf5Frame& frame, const TableLines& 
   const Hdf5Library& hdf5 = calls.library;
   const Hdf5Object creation = ordered(calls, *hdf5.file_creation);
   calls.check(hdf5.H5Pset_userblock(creation, frame.free_bytes));
-  const Hdf5Object access = calls.unlocked_access();
-  Hdf5Object whole = calls.object(hdf5.H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation, access));
+  const Hdf5Output output(calls);
+  Hdf5Object whole(hdf5, hdf5.H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation, output.access()));
+  output.check();
+  calls.check(static_cast<hid_t>(whole));
   for (const auto& [name, text] : frame.attributes) calls.add_text(whole, name.c_str(), text);
   {
     const Hdf5Object group_creation = ordered(calls, *hdf5.group_creation);
@@ -196,11 +198,13 @@ void write_hdf5(const fs::path& file, const Hdf5Frame& frame, const TableLines& 
     lines([&](std::string_view line) {
       if (!std::exchange(has_headings, true)) return;
       for_each_cell(line, [&](std::size_t k, std::string_view cell) { columns.at(k).add(cell); });
+      output.check();
     });
     for (ColumnWriter& column : columns) column.flush();
   }
   // The last part of the content is written here.
   calls.check(hdf5.H5Fclose(whole.release()));
+  output.check();
 }
 
 }  // namespace monograin

@@ -29,12 +29,6 @@ inline constexpr std::string_view k_hdf5_results = "results.h5";
 /// @throws std::runtime_error with a remedy if its library is not installed
 void expect_hdf5();
 
-/// Leaves it to the system to close HDF5 files that are open when the process ends. To be called before any use of
-/// HDF5, by a program that uses it through this header only: files that others have left open would lose data.
-///
-/// Without this call the library closes such files, and crashes if one could not be written before.
-void leave_hdf5_files_at_exit();
-
 /// Passes the lines of a table to a sink, without ends of lines: the row of headings, then the rows, as csv_text()
 /// prints them. It may be called more than once.
 using TableLines = std::function<void(const TextSink& sink)>;
