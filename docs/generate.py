@@ -44,6 +44,10 @@ FIGURES = ("die", "uniaxial", "adhesion", "snap-off", "force", "free-centre", "l
 # Modules of the package monograin whose public names users import from the package, in the order of the site.
 PYTHON_MODULES = ("runs", "prepared", "tables", "studies", "elements", "catalogue", "errors")
 
+# The headers of include/monograin, in the order in which a reader needs them.
+CPP_HEADERS = ("monograin", "scenario", "faults", "run", "status", "history", "prepared", "comparison", "continuum",
+               "continuum_difference", "study", "models", "version")
+
 # Programs of examples/cpp that pages show.
 CPP_EXAMPLES = ("run_scenario", "own_law", "sweep", "calibrate")
 
@@ -945,8 +949,9 @@ def write_python_api():
         text += f"## {title}\n\n" + table(["name", "purpose"], rows) + "\n"
     if listed != set(package.__all__):
         fail(f"no module of PYTHON_MODULES defines {', '.join(set(package.__all__) - listed)}")
-    laws = [f"laws.{name}" for name in package.laws.__all__]
-    write_python_page("laws", first_sentence(package.laws.__doc__), [".. automodule:: monograin.laws\n"],
+    title, _, description = inspect.cleandoc(package.laws.__doc__).partition("\n\n")
+    laws = [f"laws.{name}" for name in sorted(package.laws.__all__, key=lambda law: description.index(f"laws.{law}`"))]
+    write_python_page("laws", title.rstrip("."), [".. module:: monograin.laws\n\n", description, "\n"],
                       "\n" + toctree(laws))
     for law in laws:
         directive = f".. automodule:: monograin.{law}\n   :members:\n   :ignore-module-all:\n"
@@ -998,13 +1003,16 @@ def declarations_of(xml, header):
 
 
 def write_cpp_api():
-    headers = sorted((ROOT / "include" / "monograin").glob("*.hpp"))
+    folder = ROOT / "include" / "monograin"
+    headers = [folder / f"{name}.hpp" for name in CPP_HEADERS]
+    if set(headers) != set(folder.glob("*.hpp")):
+        fail(f"CPP_HEADERS are not the headers of {folder}")
     output = GENERATED / "doxygen"
     shutil.rmtree(output, ignore_errors=True)
     output.mkdir(parents=True)
     settings = {
         "PROJECT_NAME": "monograin",
-        "INPUT": ROOT / "include" / "monograin",
+        "INPUT": folder,
         "RECURSIVE": "NO",
         "FILE_PATTERNS": "*.hpp",
         "OUTPUT_DIRECTORY": output,
