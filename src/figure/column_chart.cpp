@@ -10,7 +10,6 @@
 #include <system_error>
 
 #include "figure/figure.hpp"
-#include "figure/legend.hpp"
 #include "figure/page.hpp"
 #include "figure/run_curves.hpp"
 #include "history/table.hpp"
@@ -92,6 +91,60 @@ struct Pair {
   std::string y;
 };
 
+/// Indices of the columns of a sweep's keys.
+[[nodiscard]] std::vector<std::size_t> keys_of(const Table& results) {
+  std::vector<std::size_t> keys;
+  for (std::size_t k = 0; k < results.columns().size() && results.columns()[k].name != k_after_keys; ++k) {
+    if (results.columns()[k].name != k_before_keys) keys.push_back(k);
+  }
+  return keys;
+}
+
+/// Values of a column, each of them once.
+[[nodiscard]] std::vector<double> values_once(const Table& table, std::size_t column) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < table.row_count(); ++row) values.push_back(table.at(row, column));
+  std::ranges::sort(values);
+  const auto repeated = std::ranges::unique(values);
+  values.erase(repeated.begin(), repeated.end());
+  return values;
+}
+
+/// The key after that of the abscissa that has few values, each of them in several runs on average.
+[[nodiscard]] std::optional<std::size_t> telling_key(const Table& results, std::size_t x) {
+  constexpr std::size_t k_most_values = 6;
+  std::vector<std::size_t> keys = keys_of(results);
+  if (const auto own = std::ranges::find(keys, x); own != keys.end()) std::rotate(keys.begin(), own, keys.end());
+  for (const std::size_t key : keys) {
+    const std::size_t count = values_once(results, key).size();
+    if (key != x && count > 1 && count <= k_most_values && 2 * count <= results.row_count()) return key;
+  }
+  return std::nullopt;
+}
+
+/// Points of a sweep; those with the same value of the telling key are a series.
+[[nodiscard]] std::vector<ChartSeries> points_of_sweep(const Table& results, std::size_t x, ChartSeries all) {
+  all.style = ChartSeries::Style::points;
+  const auto key = telling_key(results, x);
+  if (!key) return {std::move(all)};
+  const Column& column = results.columns()[*key];
+  const std::string name = column.name.substr(column.name.rfind('.') + 1);
+  std::vector<ChartSeries> series;
+  for (const double value : values_once(results, *key)) {
+    const std::string shown = column.holds_words()
+                                  ? column.labels[static_cast<std::size_t>(value)]
+                                  : number_with_unit(value, is_bare(column.unit) ? std::string() : column.unit);
+    ChartSeries& own = series.emplace_back(ChartSeries{
+        .legend = verbatim_text(fmt::format("{} = {}", name, shown)), .style = all.style, .colour = series.size()});
+    for (std::size_t row = 0; row < results.row_count(); ++row) {
+      if (results.at(row, *key) != value) continue;
+      own.x.push_back(all.x[row]);
+      own.y.push_back(all.y[row]);
+    }
+  }
+  return series;
+}
+
 /// The columns of the panels for a sweep: each key beside the largest value of the first force.
 [[nodiscard]] std::vector<Pair> panels_of_sweep(const Table& results, const ColumnChoice& choice) {
   const auto& columns = results.columns();
@@ -102,10 +155,7 @@ struct Pair {
   const std::string y = !choice.y.empty() ? choice.y : largest != columns.end() ? largest->name : columns.back().name;
   if (!choice.x.empty()) return {{choice.x, y}};
   std::vector<Pair> panels;
-  for (const Column& column : columns) {
-    if (column.name == k_after_keys) break;
-    if (column.name != k_before_keys) panels.push_back({column.name, y});
-  }
+  for (const std::size_t key : keys_of(results)) panels.push_back({columns[key].name, y});
   return panels;
 }
 
@@ -197,11 +247,15 @@ ColumnChart column_chart(const std::vector<fs::path>& paths, const ColumnChoice&
       } else if (shown_axis(table.columns()[x], x_axis).names != figure.chart.panels[k].x.names) {
         throw FigureError(fmt::format("{}: column '{}' has other words", file.string(), pairs[k].x));
       }
-      figure.chart.panels[k].series.push_back(
-          {.legend = paths.size() > 1 ? short_text(folder.filename().string(), k_longest_name) : std::string(),
-           .style = is_sweep(path) ? ChartSeries::Style::points : ChartSeries::Style::phases,
-           .x = values_of(table, x, x_axis),
-           .y = values_of(table, y, y_axis)});
+      ChartSeries curve{.legend = paths.size() > 1 ? verbatim_text(folder.filename().string()) : std::string(),
+                        .style = is_sweep(path) ? ChartSeries::Style::points : ChartSeries::Style::phases,
+                        .x = values_of(table, x, x_axis),
+                        .y = values_of(table, y, y_axis)};
+      std::vector<ChartSeries>& series = figure.chart.panels[k].series;
+      if (is_sweep(path) && paths.size() == 1)
+        series = points_of_sweep(table, x, std::move(curve));
+      else
+        series.push_back(std::move(curve));
       add_events(figure.chart.panels[k], events, pairs[k], x_axis, y_axis);
     }
   }

@@ -42,7 +42,7 @@ void add_event(std::vector<ChartSeries>& series, std::string_view event, double 
 
 /// Chart of chosen columns. Without a choice, a run shows the force of the driven walls over their displacement, and a
 /// sweep shows the largest value of its first force over each key in a panel. Runs are drawn as lines with their
-/// events, sweeps as points.
+/// events, sweeps as points, which tell the values of a further key apart if there are few.
 /// @throws FigureError if a table cannot be read or does not have a column, the unit is none of the column's, or a run
 /// without contacts has no choice
 [[nodiscard]] ColumnChart column_chart(const std::vector<std::filesystem::path>& paths, const ColumnChoice& choice);

@@ -1,8 +1,10 @@
 /// Figures of recorded runs, drawn by gnuplot.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace monograin {
@@ -12,6 +14,15 @@ class FigureError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+namespace figure {
+
+/// Formats of figures, as the extensions of their files name them.
+inline constexpr std::array<std::string_view, 3> k_formats{"svg", "pdf", "png"};
+/// Format of a figure for which none is chosen.
+inline constexpr std::string_view k_usual_format = k_formats.front();
+
+}  // namespace figure
 
 /// Draws force, pressure, contact area and apparent radius of one or more runs against displacement. For a model
 /// without walls, draws its own quantities against the quantity through which it is driven.

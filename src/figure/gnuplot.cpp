@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -14,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "figure/figure.hpp"
+#include "figure/fonts.hpp"
 #include "history/external_program.hpp"
 #include "scenario/hidden_path.hpp"
 #include "scenario/text_file.hpp"
@@ -51,6 +54,34 @@ constexpr const char* k_log = ".log";
   return result + '"';
 }
 
+/// A number of four bytes, as PNG files have it.
+[[nodiscard]] std::string png_number(std::uint32_t value) {
+  std::string bytes;
+  for (const unsigned shift : {24U, 16U, 8U, 0U}) bytes += static_cast<char>((value >> shift) & 0xFFU);
+  return bytes;
+}
+
+/// Checksum of a chunk of a PNG file (CRC-32).
+[[nodiscard]] std::uint32_t png_checksum(std::string_view bytes) noexcept {
+  std::uint32_t sum = ~0U;
+  for (const char c : bytes) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1U) ^ ((sum & 1U) != 0U ? 0xEDB88320U : 0U);
+  }
+  return ~sum;
+}
+
+/// States the resolution of a PNG file, which gnuplot leaves out: programs would place the figure at 72 or 96 dots per
+/// inch, several times too large.
+void state_resolution(const fs::path& file) {
+  constexpr std::size_t k_header = 33;  // signature and first chunk
+  std::string png = read_text_file(file, k_largest_text).text;
+  const std::string per_metre = png_number(static_cast<std::uint32_t>(std::lround(100.0 * k_png_per_cm)));
+  const std::string chunk = "pHYs" + per_metre + per_metre + '\1';
+  png.insert(k_header, png_number(9) + chunk + png_number(png_checksum(chunk)));
+  write_text_file(file, png);
+}
+
 }  // namespace
 
 fs::path find_gnuplot() {
@@ -64,6 +95,7 @@ void draw_with_gnuplot(const fs::path& gnuplot, const fs::path& figure, const st
                        const std::string& data) {
   const HiddenPath workplace = make_workplace(figure);
   const fs::path& folder = workplace.path();
+  if (figure.extension() != ".svg") expect_fonts(script, figure, folder / k_log);
   const fs::path drawing_name = figure.filename();
   const fs::path script_name = fs::path(drawing_name).replace_extension(".gp");
   const fs::path data_name = fs::path(drawing_name).replace_extension(".dat");
@@ -88,6 +120,7 @@ void draw_with_gnuplot(const fs::path& gnuplot, const fs::path& figure, const st
     throw FigureError(
         fmt::format("gnuplot could not draw {}: {}", shown_path(figure).string(), said.empty() ? end : said));
   }
+  if (figure.extension() == ".png") state_resolution(folder / drawing_name);
   // The script first, because it tells whose the other files are.
   const auto held = hold_signals();
   for (const fs::path& name : {script_name, data_name, drawing_name}) {

@@ -7,13 +7,17 @@
 
 namespace monograin::figure {
 
+/// Resolution of PNG figures, which the files state: 300 dots per inch.
+inline constexpr double k_png_per_cm = 118.11;
+
 /// The gnuplot program on the PATH. @throws FigureError that says how to install it
 [[nodiscard]] std::filesystem::path find_gnuplot();
 
 /// Draws a figure, and puts its script and its data beside it, with the endings .gp and .dat: all three or none. The
 /// script writes its figure to the file that the gnuplot variable `output` names, and reads the data by their name.
 ///
-/// @throws FigureError with gnuplot's messages if it draws nothing
+/// @throws FigureError with gnuplot's messages if it draws nothing; for PDF and PNG if no installed font has a letter
+/// of the script, where pango would draw a box of its own over the whole figure
 /// @throws std::runtime_error if a file cannot be written
 void draw_with_gnuplot(const std::filesystem::path& gnuplot, const std::filesystem::path& figure,
                        const std::string& script, const std::string& data);

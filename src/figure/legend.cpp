@@ -91,8 +91,7 @@ constexpr double k_heading_cm = 1.7;
 [[nodiscard]] LegendRow run_row(const std::vector<RunCurves>& runs, const Palette& palette) {
   LegendRow row{"Run", {}};
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    row.entries.push_back(
-        {short_text(runs[k].name, k_longest_name), phase_line(palette.particle_line(k), Phase::loading)});
+    row.entries.push_back({verbatim_text(runs[k].name), phase_line(palette.particle_line(k), Phase::loading)});
   }
   return row;
 }
@@ -218,6 +217,9 @@ std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout
   const Box& place = layout.legend;
   double top = place.top();
   for (const LegendRow& row : rows) {
+    std::vector<std::string> titles;
+    for (const auto& entry : row.entries) titles.push_back(entry.title);
+    titles = fitted_texts(titles, place.width - k_heading_cm - k_sample_cm);
     text += fmt::format("set label 1 {} at screen {:.4f}, {:.4f} left\n", gnuplot_string(row.heading),
                         place.left / layout.width, (top - 0.5 * k_legend_line_cm) / layout.height);
     const std::size_t columns = columns_of(row, place.width);
@@ -227,8 +229,7 @@ std::string legend_text(const std::vector<LegendRow>& rows, const Layout& layout
           "set key at screen {:.4f}, {:.4f} left top horizontal Left reverse enhanced spacing 1.2 samplen 2.5 "
           "noautotitle\n"
           "plot [0:1] [0:1] NaN, keyentry {} title {}\n",
-          left / layout.width, top / layout.height, row.entries[k].style,
-          label_string(fitted_text(row.entries[k].title, place.width - k_heading_cm - k_sample_cm)));
+          left / layout.width, top / layout.height, row.entries[k].style, label_string(titles[k]));
       if (k == 0) text += "unset label 1\n";
       if ((k + 1) % columns == 0 && k + 1 < row.entries.size()) top -= k_legend_line_cm;
     }

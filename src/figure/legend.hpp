@@ -56,9 +56,6 @@ inline constexpr unsigned k_neutral_colour = 0x303030u;
 /// gnuplot's style of the points at an event: each name has one symbol, in every figure.
 [[nodiscard]] std::string event_points(std::string_view name);
 
-/// Characters of the longest name of a run: a line of the legend.
-inline constexpr std::size_t k_longest_name = 56;
-
 struct LegendRow {
   struct Entry {
     std::string title;  ///< gnuplot's enhanced text

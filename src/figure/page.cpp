@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -30,9 +31,9 @@ constexpr double k_most_decades_up = 6.0;
 
 [[nodiscard]] Format format_of(const fs::path& output) {
   const std::string extension = output.extension().string();
-  if (extension == ".svg") return Format::svg;
-  if (extension == ".pdf") return Format::pdf;
-  if (extension == ".png") return Format::png;
+  for (std::size_t k = 0; k < k_formats.size(); ++k) {
+    if (extension.starts_with('.') && extension.substr(1) == k_formats[k]) return static_cast<Format>(k);
+  }
   throw FigureError(
       fmt::format("{}: unknown figure format '{}'; expected .svg, .pdf or .png", output.string(), extension));
 }
@@ -43,9 +44,14 @@ void make_folder(const fs::path& folder) {
   if (failure) throw FigureError(fmt::format("{} cannot be made: {}", folder.string(), failure.message()));
 }
 
+/// Beginning of the script that draws a figure.
+[[nodiscard]] std::string first_words(const std::string& figure_name) {
+  return fmt::format("# Draws {}. ", gnuplot_file(figure_name));
+}
+
 [[nodiscard]] std::string terminal(Format format, const Layout& layout) {
   constexpr double k_svg_per_cm = 37.8;  // CSS: 96 px to the inch
-  constexpr double k_png_per_cm = 80.0;
+  constexpr double k_png_scale = k_png_per_cm / k_svg_per_cm;
   const auto pixels = [](double cm, double per_cm) { return std::lround(cm * per_cm); };
   switch (format) {
     case Format::svg:
@@ -59,18 +65,20 @@ void make_folder(const fs::path& folder) {
           layout.width, layout.height);
     case Format::png:
       return fmt::format(
-          "pngcairo enhanced size {},{} font 'Helvetica,10' fontscale 2.1 linewidth 2 pointscale 2.6 "
+          "pngcairo enhanced size {},{} font 'Helvetica,10' fontscale {:.4g} linewidth {:.4g} pointscale {:.4g} "
           "dashlength 1.8",
-          pixels(layout.width, k_png_per_cm), pixels(layout.height, k_png_per_cm));
+          pixels(layout.width, k_png_per_cm), pixels(layout.height, k_png_per_cm), k_png_scale, 0.95 * k_png_scale,
+          1.23 * k_png_scale);
   }
   return {};
 }
+
+[[nodiscard]] int power_of_ten(double value) { return static_cast<int>(std::floor(std::log10(value))); }
 
 /// Power of ten by which the numbers of a range are divided if they are too long for the room beside it; else 0.
 [[nodiscard]] int shared_power(const AxisRange& range) {
   constexpr int k_least = -3;  // of the tics' distance, too: 0.0002 is too long
   constexpr int k_most = 4;
-  const auto power_of_ten = [](double value) { return static_cast<int>(std::floor(std::log10(value))); };
   const int power = power_of_ten(std::max(std::abs(range.lowest), std::abs(range.highest)));
   const bool is_fine = range.tic_step > 0.0 && power_of_ten(range.tic_step) < k_least;
   return power < k_least || power > k_most || is_fine ? power : 0;
@@ -83,22 +91,34 @@ struct Numbers {
   bool is_in_label = false;  ///< the label's unit has a prefix for the power
 };
 
+struct Prefix {
+  std::string_view symbol;
+  int power;  ///< of ten
+};
+
+/// Prefix of SI with which numbers of a power of ten become short; none if the unit takes none.
+[[nodiscard]] std::optional<Prefix> prefix_of(std::string_view unit, int power) {
+  constexpr std::array<std::string_view, 9> k_prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
+  constexpr std::array<std::string_view, 5> k_units{"Pa", "N", "m", "J", "s"};
+  const int thousands = (power >= 0 ? power : power - 2) / 3;
+  const int prefix = 4 + thousands;
+  if (std::ranges::find(k_units, unit) == k_units.end() || prefix < 0 || prefix >= static_cast<int>(k_prefixes.size()))
+    return std::nullopt;
+  return Prefix{k_prefixes[static_cast<std::size_t>(prefix)], 3 * thousands};
+}
+
 /// Numbers with units of SI, such as Pa, become shorter by a prefix: MPa.
 [[nodiscard]] Numbers numbers_of(const Axis& axis) {
   if (axis.is_logarithmic || !axis.names.empty()) return {axis.label};
   const int power = shared_power(axis.range);
   if (axis.keeps_unit) return {axis.label, power};
-  const int thousands = (power >= 0 ? power : power - 2) / 3;
-  constexpr std::array<std::string_view, 9> k_prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
-  constexpr std::array<std::string_view, 5> k_units{" [Pa]", " [N]", " [m]", " [J]", " [s]"};
-  const auto unit = std::ranges::find_if(k_units, [&](std::string_view u) { return axis.label.ends_with(u); });
-  const int prefix = 4 + thousands;
-  if (thousands == 0 || unit == k_units.end() || prefix < 0 || prefix >= static_cast<int>(k_prefixes.size())) {
-    return {axis.label, power};
-  }
+  const std::size_t begin = axis.label.rfind(" [");
+  if (begin == std::string::npos || !axis.label.ends_with(']')) return {axis.label, power};
+  const auto prefix = prefix_of(std::string_view(axis.label).substr(begin + 2, axis.label.size() - begin - 3), power);
+  if (!prefix || prefix->power == 0) return {axis.label, power};
   std::string label = axis.label;
-  label.insert(label.rfind('[') + 1, k_prefixes[static_cast<std::size_t>(prefix)]);
-  return {label, 3 * thousands, true};
+  label.insert(begin + 2, prefix->symbol);
+  return {label, prefix->power, true};
 }
 
 /// Tics with numbers that are divided by a power of ten.
@@ -157,7 +177,7 @@ struct Numbers {
 std::string page_head(Format format, const Layout& layout, const std::string& figure_name,
                       const std::string& data_name) {
   return fmt::format(
-      "# Draws {0}. To be run in its own folder, as gnuplot ./NAME.gp\n"
+      "{3}To be run in its own folder, as gnuplot ./NAME.gp\n"
       "if (!exists(\"output\")) output = {0}\n"
       "data = {1}\n\n"
       "set encoding utf8\n"
@@ -171,7 +191,7 @@ std::string page_head(Format format, const Layout& layout, const std::string& fi
       "set xlabel offset 0, 0.5\n"
       "unset key\n"
       "set multiplot\n",
-      gnuplot_file(figure_name), gnuplot_file(data_name), terminal(format, layout));
+      gnuplot_file(figure_name), gnuplot_file(data_name), terminal(format, layout), first_words(figure_name));
 }
 
 std::string frame_text(const Layout& layout, std::size_t place, const Axis& x, const Axis& y) {
@@ -231,6 +251,13 @@ std::string label_string(std::string_view enhanced) {
   return gnuplot_string(text);
 }
 
+std::string number_with_unit(double value, const std::string& unit) {
+  if (unit.empty()) return fmt::format("{:.4g}", value);
+  const auto prefix = value == 0.0 ? std::nullopt : prefix_of(unit, power_of_ten(std::abs(value)));
+  if (!prefix) return fmt::format("{:.4g} {}", value, unit);
+  return fmt::format("{:.4g} {}{}", value / std::pow(10.0, prefix->power), prefix->symbol, unit);
+}
+
 std::string verbatim_text(std::string_view name) {
   std::string text;
   for (const char c : name) {
@@ -257,6 +284,16 @@ void expect_own_figure(const fs::path& figure) {
   const fs::path script = fs::path(figure).replace_extension(".gp");
   for (const fs::path& file : {figure, script, fs::path(figure).replace_extension(".dat")})
     expect_own_file(file, script);
+}
+
+void remove_own_figure(const fs::path& script) {
+  constexpr std::size_t k_first_line = 4096;
+  const std::string text = read_text_file(script, k_first_line).text;
+  for (const std::string_view format : k_formats) {
+    const fs::path figure = fs::path(script).replace_extension(format);
+    if (!text.starts_with(first_words(figure.filename().string()))) continue;
+    for (const fs::path& file : {figure, script, fs::path(script).replace_extension(".dat")}) fs::remove(file);
+  }
 }
 
 FigureFiles::FigureFiles(fs::path output) : figure_(std::move(output)), format_(format_of(figure_)) {

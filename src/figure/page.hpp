@@ -10,7 +10,7 @@
 
 namespace monograin::figure {
 
-enum class Format { svg, pdf, png };
+enum class Format { svg, pdf, png };  ///< in the order of k_formats
 
 struct Axis {
   std::string label;
@@ -37,6 +37,10 @@ struct Axis {
 /// hyphens that begin a number or stand between terms become minus signs.
 [[nodiscard]] std::string label_string(std::string_view enhanced);
 
+/// A number in the SI unit of its quantity, with a prefix that makes it short: "20 MPa".
+/// @param unit  empty for a pure number
+[[nodiscard]] std::string number_with_unit(double value, const std::string& unit);
+
 /// A name as gnuplot's enhanced text, with all its characters shown as they are.
 [[nodiscard]] std::string verbatim_text(std::string_view name);
 
@@ -50,6 +54,10 @@ inline constexpr const char* k_page_foot = "unset multiplot\nunset output\n";
 /// Refuses to replace a figure that the program has not drawn: no script of the program stands beside it.
 /// @throws std::runtime_error for a figure of the user
 void expect_own_figure(const std::filesystem::path& figure);
+
+/// Removes the figure that a script of the program draws, with the script and its data. Files beside it stay, such as
+/// the user's own copy of the figure in another format.
+void remove_own_figure(const std::filesystem::path& script);
 
 /// A figure with its script and its data in files beside it: the same name with the endings .gp and .dat.
 class FigureFiles {

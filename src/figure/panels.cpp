@@ -103,7 +103,8 @@ Layout arrange(std::size_t panel_count, std::size_t lines_in_strip, std::optiona
   const std::size_t rows = (panel_count + columns - 1) / columns;
   const bool is_in_cell =
       panel_count % columns != 0 && lines_in_cell && height_of(*lines_in_cell) <= k_cell_height_cm - k_top_cm;
-  const double strip = is_in_cell ? k_legend_margin_cm : height_of(lines_in_strip) + 2 * k_legend_margin_cm;
+  const bool has_strip = !is_in_cell && lines_in_strip > 0;
+  const double strip = has_strip ? height_of(lines_in_strip) + 2 * k_legend_margin_cm : k_legend_margin_cm;
   const double cell_width = k_figure_width_cm / static_cast<double>(columns);
 
   Layout layout{.width = k_figure_width_cm,

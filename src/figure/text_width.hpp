@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace monograin::figure {
 
@@ -10,7 +11,11 @@ namespace monograin::figure {
 /// itself depends on the reader's machine.
 [[nodiscard]] double text_width(std::string_view enhanced);
 
-/// An enhanced text in letters so small that it fits into a width [cm]; unchanged if it fits already.
+/// Enhanced texts that fit into a width [cm]; those that fit already are unchanged. Letters become smaller down to 7
+/// pt; beyond that a text loses a part of its middle, but not where it differs from another of the texts.
+[[nodiscard]] std::vector<std::string> fitted_texts(const std::vector<std::string>& enhanced, double width_cm);
+
+/// One text that fits into a width [cm].
 [[nodiscard]] std::string fitted_text(const std::string& enhanced, double width_cm);
 
 }  // namespace monograin::figure

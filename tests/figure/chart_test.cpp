@@ -359,8 +359,11 @@ TEST(Label, KeepsItsBlanksInEveryRenderer) {
 TEST(Chart, MakesANoteThatIsTooWideSmaller) {
   Chart chart = chart_of({series("a")});
   EXPECT_EQ(script_of(chart).find("{/*"), std::string::npos);
+  chart.panels[0].note = std::string(50, 'm');
+  EXPECT_NE(script_of(chart).find("{/*0.79 m"), std::string::npos) << script_of(chart);
   chart.panels[0].note = std::string(100, 'm');
-  EXPECT_NE(script_of(chart).find("{/*0.39 m"), std::string::npos) << script_of(chart);
+  EXPECT_NE(script_of(chart).find("{/*0.72 mmm"), std::string::npos) << script_of(chart);
+  EXPECT_NE(script_of(chart).find("mmm...mmm"), std::string::npos) << script_of(chart);
 }
 
 TEST(Chart, PutsALegendThatIsWiderThanACellBelowThePanels) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "figure/figure.hpp"
 #include "support/temporary_folder.hpp"
@@ -109,6 +110,39 @@ TEST_F(ColumnCharts, ShowASweepOverEachOfItsKeys) {
   const ColumnChart chosen = column_chart({path("sweep")}, {.x = "particle.radius", .y = "end.work"});
   ASSERT_EQ(chosen.chart.panels.size(), 1U);
   EXPECT_EQ(chosen.chart.panels[0].series[0].y, (std::vector{1.0, 2.0}));
+}
+
+TEST_F(ColumnCharts, TellTheFewValuesOfAFurtherKeyApart) {
+  std::string grid =
+      "run,material.poisson_ratio[-],material.yield_stress[Pa],loading.configuration,status,reason,"
+      "max.axial.force[N]\n";
+  int run = 0;
+  for (const char* ratio : {"0.2", "0.25", "0.3", "0.35", "0.4", "0.45", "0.48"}) {
+    for (const char* stress : {"5e7", "2e7"}) {
+      for (const char* walls : {"die", "simple"}) {
+        ++run;
+        grid +=
+            std::to_string(run) + ',' + ratio + ',' + stress + ',' + walls + ",complete,," + std::to_string(run) + '\n';
+      }
+    }
+  }
+  write("grid/results.csv", grid);
+  const auto legends = [](const ChartPanel& panel) {
+    std::vector<std::string> found;
+    for (const ChartSeries& series : panel.series) found.push_back(series.legend);
+    return found;
+  };
+  const ColumnChart figure = column_chart({path("grid")}, {});
+  ASSERT_EQ(figure.chart.panels.size(), 3U);
+  const std::vector<std::string> stresses{"yield\\_stress = 20 MPa", "yield\\_stress = 50 MPa"};
+  EXPECT_EQ(legends(figure.chart.panels[0]), stresses) << "the next key";
+  EXPECT_EQ(figure.chart.panels[0].series[0].y,
+            (std::vector<double>{3, 4, 7, 8, 11, 12, 15, 16, 19, 20, 23, 24, 27, 28}));
+  EXPECT_EQ(legends(figure.chart.panels[1]),
+            (std::vector<std::string>{"configuration = die", "configuration = simple"}));
+  EXPECT_EQ(legends(figure.chart.panels[2]), stresses) << "the ratio has too many values";
+  EXPECT_EQ(legends(column_chart({path("grid"), path("sweep")}, {.x = "loading.configuration"}).chart.panels.at(0)),
+            (std::vector<std::string>{"grid", "sweep"}));
 }
 
 TEST_F(ColumnCharts, WantBothColumnsOfARunWithoutContacts) {

@@ -54,6 +54,11 @@ TEST(Layout, PutsALegendTooLongForACellBelowThePanels) {
   for (const Panel& panel : layout.panels) EXPECT_GT(panel.axes.bottom, layout.legend.top());
 }
 
+TEST(Layout, LeavesNoBandForALegendThatIsEmpty) {
+  EXPECT_LE(arrange(2, 0, 0).panels[0].axes.bottom, 1.7);
+  EXPECT_LT(arrange(2, 0, 0).height + k_legend_line_cm, arrange(2, 1, 1).height);
+}
+
 TEST(Layout, LetsNoPanelOverlapAnother) {
   const Layout layout = arrange(4, 4, 8);
   ASSERT_EQ(layout.panels.size(), 4u);
