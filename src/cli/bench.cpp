@@ -29,6 +29,7 @@ struct BenchOptions {
   std::string definitions;
   std::string output;
   std::string measured;
+  std::string format{figure::k_usual_format};
   std::vector<std::string> integrators;
   std::vector<double> tolerances;
   bool is_against_fe = false;
@@ -39,7 +40,8 @@ constexpr const char* k_fe_figure = "laws-fe";
 
 /// Compares every law with finite-element curves.
 int bench_against_fe(const BenchOptions& options) {
-  const std::vector<AtlasFigure> figures = make_atlas(options.definitions, {k_fe_figure});
+  std::vector<AtlasFigure> figures = make_atlas(options.definitions, {k_fe_figure});
+  figures.front().format = options.format;
   for (const fs::path& file : write_atlas(figures, options.output)) say("-> {}\n", file.string());
   for (const AtlasFigure& figure : figures) print_data("{}\n", tables_text(figure));
   return exit_code_of(figures.front().status);
@@ -92,7 +94,7 @@ int bench(const BenchOptions& named) {
   const BenchOptions options = with_defaults(named);
   if (options.is_against_fe) return bench_against_fe(options);
   if (!options.measured.empty()) {
-    for (const fs::path& file : redraw_bench(options.measured, options.output)) {
+    for (const fs::path& file : redraw_bench(options.measured, options.output, options.format)) {
       fmt::print(stderr, "-> {}\n", file.string());
     }
     return k_success;
@@ -112,7 +114,7 @@ int bench(const BenchOptions& named) {
   const fs::path output = options.output;
   for (const char* name : {"bench.csv", "bench.md"}) expect_own_file(output / name, output / "bench.csv");
   for (const CheckedScenario& scenario : scenarios) {
-    figure::expect_own_figure(output / fmt::format("bench-{}.svg", scenario.name));
+    figure::expect_own_figure(output / fmt::format("bench-{}.{}", scenario.name, options.format));
   }
   std::vector<BenchScene> scenes;
   std::vector<BenchProfile> profiles;
@@ -130,7 +132,7 @@ int bench(const BenchOptions& named) {
   std::vector<BenchSaving> savings;
   if (options.scenes.empty()) savings = measure_savings(settings, list.savings);
   print_data("{}", bench_text(scenes, profiles, savings));
-  for (const fs::path& file : write_bench(scenes, profiles, savings, options.output)) {
+  for (const fs::path& file : write_bench(scenes, profiles, savings, options.output, options.format)) {
     say("-> {}\n", file.string());
   }
   return k_success;
@@ -164,6 +166,7 @@ void add_bench_command(CLI::App& app, Action& action) {
       ->excludes("--against-fe");
   command->add_option("-o,--output", options->output,
                       "Folder of table, CSV and figures [plots in a checkout, else bench]");
+  add_figure_format(*command, options->format);
   command->footer("Example: monograin bench mdr-die-50 --integrator auto,cvode-bdf -o bench");
   command->callback([options, &action] { action = [options] { return bench(*options); }; });
 }

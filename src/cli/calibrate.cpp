@@ -27,6 +27,7 @@ struct CalibrateOptions {
   std::vector<std::string> files;
   std::string output;
   std::optional<double> confidence;
+  std::string format{figure::k_usual_format};
   bool is_quiet = false;
   bool is_strict = false;
   bool has_report = false;
@@ -48,7 +49,7 @@ CalibrationResult run_calibration(const Calibration& calibration, const fs::path
       if (!options.is_quiet) bar.show(done);
     });
   }();
-  const std::string no_figure = write_calibration(calibration, result, staged, options.has_report);
+  const std::string no_figure = write_calibration(calibration, result, staged, options.has_report, options.format);
   print_data("{}", calibration_text(calibration, result));
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   for (const std::string& warning : result.warnings) say("warning: {}\n", warning);
@@ -87,7 +88,8 @@ int run_calibrations(const CalibrateOptions& options) {
       });
     }();
     print_data("\n{}", comparison_text(calibrations, results, comparison));
-    const std::string no_figure = write_comparison(calibrations, results, comparison, *staged, options.has_report);
+    const std::string no_figure =
+        write_comparison(calibrations, results, comparison, *staged, options.has_report, options.format);
     if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
     if (!options.is_quiet) say("comparison -> {}\n", together.string());
   }
@@ -101,13 +103,16 @@ struct DataOptions {
   std::string file;
   DataChoice choice;
   std::string output;
+  std::string format;
   bool draws = false;
 };
 
 /// Path of the figure. @throws UsageError if the figure or a file beside it would replace data
 fs::path figure_of(const DataOptions& options, const std::vector<DataReport>& reports) {
   const std::string stem = name_of_file(options.file).stem().string();
-  const fs::path output = options.output.empty() ? fs::path(stem + "-data.svg") : fs::path(options.output);
+  const std::string_view format = options.format.empty() ? figure::k_usual_format : options.format;
+  const fs::path output =
+      options.output.empty() ? fs::path(fmt::format("{}-data.{}", stem, format)) : fs::path(options.output);
   for (const DataReport& report : reports) {
     for (const char* extension : {"", ".gp", ".dat"}) {
       fs::path written = output;
@@ -130,7 +135,7 @@ int show_data(const DataOptions& options) {
   const std::vector<DataReport> reports = is_calibration ? reports_of(read_calibration(options.file))
                                                          : std::vector{report_of_file(options.file, options.choice)};
   for (std::size_t k = 0; k < reports.size(); ++k) print_data("{}{}", k > 0 ? "\n" : "", data_text(reports[k]));
-  if (!options.draws && options.output.empty()) return k_success;
+  if (!options.draws && options.output.empty() && options.format.empty()) return k_success;
   const fs::path output = figure_of(options, reports);
   draw_data(reports, output);
   say("figure -> {}\n", output.string());
@@ -147,6 +152,9 @@ void add_data_command(CLI::App& app, Action& action) {
   command->add_option("--y", options->choice.y, "Column: heading or number [the first force, else the next numbers]");
   command->add_flag("--plot", options->draws, "Draw y over x, loading and unloading apart");
   command->add_option("-o,--output", options->output, "Figure to write: .svg, .pdf or .png [NAME-data.svg]");
+  add_figure_format(*command, options->format)
+      ->description("Draw NAME-data in this format: svg, pdf or png")
+      ->excludes("--output");
   command->footer("Example: monograin data scenarios/calibrate/uniaxial.csv --plot");
   command->callback([options, &action] { action = [options] { return show_data(*options); }; });
 }
@@ -166,6 +174,7 @@ void add_calibrate_command(CLI::App& app, Action& action) {
                    "Level of the two-sided intervals, between 0 and 1, e.g. 0.99 [the file's, or 0.95]")
       ->check(CLI::Range(1e-6, 1.0 - 1e-6))
       ->check(is_no_nan());
+  add_figure_format(*command, options->format);
   command->add_flag("--report", options->has_report,
                     "Leave report.md and report.pdf, too: data, figure, intervals, residuals, warnings");
   command->add_flag("--quiet", options->is_quiet, "Print the result, warnings and errors only");

@@ -52,6 +52,10 @@ auto or_usage_error(const std::string& subject, Call&& call) {
 /// Adds the option --set, which overrides keys of a scenario.
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides);
 
+/// Adds the option --figure, which chooses the format of the figures that a command leaves.
+/// @param format  keeps its value without the option
+CLI::Option* add_figure_format(CLI::App& command, std::string& format);
+
 /// The model of a name given on the command line.
 /// @throws UsageError if there is no such model; the message lists the models
 [[nodiscard]] const Model& model_named(const std::string& name);

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 struct DesignOptions {
   std::string file;
   std::string output;
+  std::string format{figure::k_usual_format};
 };
 
 int design(const DesignOptions& options) {
@@ -24,7 +25,7 @@ int design(const DesignOptions& options) {
   const fs::path folder = options.output.empty() ? fs::path("runs") / plan.name : fs::path(options.output);
   StagedFolder staged(folder, k_identify_marker);
   const IdentifyResult result = identify(plan);
-  const std::string no_figure = write_identify(plan, result, staged);
+  const std::string no_figure = write_identify(plan, result, staged, options.format);
   print_data("{}", identify_text(plan, result));
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   for (std::size_t k = 0; k < plan.programs.size(); ++k) {
@@ -43,6 +44,7 @@ void add_design_command(CLI::App& app, Action& action) {
   command->add_option("FILE", options->file, "Plan of an experiment (TOML): scenario, free parameters, programs, noise")
       ->required();
   command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
+  add_figure_format(*command, options->format);
   command->footer("Example: monograin design scenarios/design/uniaxial.toml");
   command->callback([options, &action] { action = [options] { return design(*options); }; });
 }

@@ -26,28 +26,32 @@ _monograin() {
     mapfile -t COMPREPLY < <(compgen -W "lammps table --help" -- "$current")
     return
   fi
+  if [[ $previous == --figure ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "svg pdf png" -- "$current")
+    return
+  fi
   if [[ $previous == --mesh ]]; then
     mapfile -t COMPREPLY < <(compgen -W "coarse medium fine" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
-    run) options="--output --set --plot --quiet --help" ;;
+    run) options="--output --set --plot --figure --quiet --help" ;;
     check) options="--set --help" ;;
     models) options="--parameters --for --help" ;;
-    plot) options="--output --profile --vtk --x --y --unit --data --help" ;;
-    atlas) options="--plots --output --list --help" ;;
+    plot) options="--output --figure --profile --vtk --x --y --unit --data --help" ;;
+    atlas) options="--plots --output --figure --list --help" ;;
     compare) options="--x --y --tol --help" ;;
-    calibrate) options="--output --confidence --report --quiet --strict --help" ;;
-    design) options="--output --help" ;;
-    data) options="--x --y --plot --output --help" ;;
+    calibrate) options="--output --confidence --report --figure --quiet --strict --help" ;;
+    design) options="--output --figure --help" ;;
+    data) options="--x --y --plot --output --figure --help" ;;
     export)
       options="--set --output --help"
       [[ ${COMP_WORDS[2]} == table ]] && options+=" --wall"
       ;;
     continuum) options="--mesh --error --keep --set --output --help" ;;
-    sweep) options="--jobs --shard --format --design-only --output --quiet --help" ;;
-    sensitivity) options="--jobs --confidence --output --help" ;;
-    bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --help" ;;
+    sweep) options="--jobs --shard --format --design-only --output --figure --quiet --help" ;;
+    sensitivity) options="--jobs --confidence --output --figure --help" ;;
+    bench) options="--scenes --integrator --rtol --profile --against-fe --redraw --plots --output --figure --help" ;;
     stress) options="--time --seed --model --first --scenes --jobs --output --help" ;;
     regress) options="--accept --scenarios --curves --help" ;;
     *) options="--help" ;;

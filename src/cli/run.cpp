@@ -25,6 +25,7 @@ struct RunOptions {
   std::string output;
   std::vector<std::string> overrides;
   bool draws_figure = false;
+  std::string format;
   bool is_quiet = false;
 };
 
@@ -74,9 +75,9 @@ void choose_folders(std::vector<Job>& jobs, const std::string& output) {
 }
 
 /// Draws the figure of a run; warns if this fails, because a run must not fail for its figure.
-void draw_figure(const fs::path& folder) {
+void draw_figure(const fs::path& folder, std::string_view format) {
   try {
-    draw_runs({folder}, folder / "figure.svg");
+    draw_runs({folder}, folder / fmt::format("figure.{}", format));
   } catch (const std::exception& error) {
     say("warning: no figure: {}\n", in_own_words(error));
   }
@@ -94,11 +95,17 @@ void report(const Run& run, const fs::path& folder) {
 int run(const RunOptions& options) {
   std::vector<Job> jobs = read_jobs(options);
   choose_folders(jobs, options.output);
+  std::function<void(const fs::path&)> draw;
+  if (options.draws_figure || !options.format.empty()) {
+    draw = [&](const fs::path& folder) {
+      draw_figure(folder, options.format.empty() ? figure::k_usual_format : options.format);
+    };
+  }
   int worst = k_success;
   for (const Job& job : jobs) {
     Run result = run_scenario(job.scenario);
     result.timings.parse = job.parse_time;
-    write_run(result, *job.staged, options.draws_figure ? draw_figure : std::function<void(const fs::path&)>());
+    write_run(result, *job.staged, draw);
     if (!options.is_quiet) {
       for (const std::string& warning : result.record.warnings) say("warning: {}\n", warning);
       report(result, job.folder);
@@ -127,6 +134,12 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
   command.add_option("--set", overrides, "Override a key: key=value, e.g. material.yield_stress='30 MPa'")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+}
+
+CLI::Option* add_figure_format(CLI::App& command, std::string& format) {
+  return command.add_option("--figure", format, "Format of the figure: svg, pdf or png [svg]")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember(std::vector<std::string>(figure::k_formats.begin(), figure::k_formats.end())));
 }
 
 int exit_code_of(RunStatus status) {
@@ -163,6 +176,7 @@ void add_run_command(CLI::App& app, Action& action) {
       "Folder of the run (of several files: the folder that holds theirs) [runs/NAME, with --set runs/NAME-DIGEST]");
   add_overrides(*command, options->overrides);
   command->add_flag("--plot", options->draws_figure, "Draw figure.svg beside the curves");
+  add_figure_format(*command, options->format)->description("Draw the figure in this format: svg, pdf or png");
   command->add_flag("--quiet", options->is_quiet, "Print errors only");
   command->footer("Example: monograin run scenarios/die.toml --set loading.steps[0].displacement='0.3 R0' --plot");
   command->callback([options, &action] { action = [options] { return run(*options); }; });

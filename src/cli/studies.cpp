@@ -38,6 +38,7 @@ namespace fs = std::filesystem;
 struct PlotOptions {
   std::vector<std::string> runs;
   std::string output;
+  std::string format{figure::k_usual_format};
   std::optional<double> profile;  ///< [s]
   bool writes_vtk = false;
   figure::ColumnChoice columns;
@@ -51,11 +52,16 @@ struct PlotOptions {
 /// Folder of a run that is named by itself or by its history.csv.
 fs::path folder_of(const fs::path& run) { return fs::is_directory(run) ? run : run.parent_path(); }
 
+/// The figure that -o names, or one of the chosen format.
+fs::path figure_path(const PlotOptions& options, fs::path usual) {
+  return options.output.empty() ? usual.replace_extension(options.format) : fs::path(options.output);
+}
+
 int plot_profile(const PlotOptions& options) {
   if (options.runs.size() != 1) throw UsageError("--profile takes one run");
   const fs::path run = options.runs.front();
   const fs::path folder = folder_of(run);
-  const fs::path output = options.output.empty() ? folder / "profile.svg" : fs::path(options.output);
+  const fs::path output = figure_path(options, folder / "profile");
   const Table profiles = [&] {
     try {
       return contact_profiles(scenario_of_run(folder), *options.profile);
@@ -105,7 +111,7 @@ figure::ColumnChart column_chart_of(const PlotOptions& options, const std::vecto
       const auto axis = [](DataAxis& read) {
         return figure::MeasuredPoints::Axis{read.name, read.unit, std::move(read.values)};
       };
-      figure::add_points(chart, {figure::short_text(fs::path(file).stem().string()), axis(data.x), axis(data.y)});
+      figure::add_points(chart, {figure::verbatim_text(fs::path(file).stem().string()), axis(data.x), axis(data.y)});
     }
     return chart;
   } catch (const FigureError& error) {
@@ -128,7 +134,7 @@ int plot(const PlotOptions& options) {
   }
   if (options.profile) return plot_profile(options);
   if (options.writes_vtk) return plot_vtk(options);
-  const fs::path output = options.output.empty() ? folder_of(runs.front()) / "figure.svg" : fs::path(options.output);
+  const fs::path output = figure_path(options, folder_of(runs.front()) / "figure");
   if (options.has_own_axes() || std::ranges::any_of(runs, figure::is_sweep)) {
     figure::draw_chart(column_chart_of(options, runs).chart, "columns of runs", output);
   } else {
@@ -144,6 +150,7 @@ struct AtlasOptions {
   std::vector<std::string> names;
   std::string definitions;
   std::string output;
+  std::string format;
   bool only_lists = false;
 };
 
@@ -173,10 +180,13 @@ int list(const AtlasOptions& options) {
 int draw_atlas(const AtlasOptions& options) {
   if (options.only_lists) return list(options);
   const AtlasFolders folders = atlas_folders(options);
-  const std::vector<AtlasFigure> figures = [&] {
+  std::vector<AtlasFigure> figures = [&] {
     ProgressBar bar("figures");
     return make_atlas(folders.definitions, options.names, [&](auto done, auto of) { bar.show(done, of); });
   }();
+  if (!options.format.empty()) {
+    for (AtlasFigure& figure : figures) figure.format = options.format;
+  }
   for (const fs::path& file : write_atlas(figures, folders.output)) say("-> {}\n", file.string());
   auto status = RunStatus::complete;
   for (const AtlasFigure& figure : figures) {
@@ -305,6 +315,8 @@ void add_plot_command(CLI::App& app, Action& action) {
       ->required();
   command->add_option("-o,--output", options->output,
                       "Figure to write: .svg, .pdf or .png [figure.svg in the first run's folder]");
+  CLI::Option* format = add_figure_format(*command, options->format);
+  format->description("Format of the figure without -o: svg, pdf or png [svg]")->excludes("--output");
   command
       ->add_option(
           "--profile", options->profile,
@@ -322,9 +334,10 @@ void add_plot_command(CLI::App& app, Action& action) {
                    "File of measured data to draw as points, read as by monograin data; its columns are found by "
                    "the dimensions of the axes. The folder of a calibration: its data without what the machine adds")
       ->allow_extra_args(false);
-  command->add_flag(
-      "--vtk", options->writes_vtk,
-      "Write particle and walls at up to 200 instants for ParaView instead [folder vtk in that of the run]");
+  command
+      ->add_flag("--vtk", options->writes_vtk,
+                 "Write particle and walls at up to 200 instants for ParaView instead [folder vtk in that of the run]")
+      ->excludes(format);
   command->footer("Example: monograin plot runs/die -o die.pdf");
   command->callback([options, &action] { action = [options] { return plot(*options); }; });
 }
@@ -337,6 +350,8 @@ void add_atlas_command(CLI::App& app, Action& action) {
                       "Folder of the definitions [plots, or those that come with the program]");
   command->add_option("-o,--output", options->output,
                       "Folder to write to [that of the definitions; figures for those of the program]");
+  add_figure_format(*command, options->format)
+      ->description("Format of the figures: svg, pdf or png [that of the definition]");
   command->add_flag("-l,--list", options->only_lists, "List the figures there are");
   command->footer("Example: monograin atlas mdr-12-die -o figures");
   command->callback([options, &action] { action = [options] { return draw_atlas(*options); }; });

@@ -26,6 +26,7 @@ struct SweepCommandOptions {
   std::string output;
   std::string shard = "1/1";
   std::string format;
+  std::string figure_format{figure::k_usual_format};
   int threads = 0;
   bool makes_design_only = false;
   bool is_quiet = false;
@@ -110,9 +111,10 @@ int sweep(const SweepCommandOptions& options) {
                           .threads = options.threads,
                           .shard = shard,
                           .progress = {},
-                          .format = results_format(options.format)};
+                          .format = results_format(options.format),
+                          .figure_format = options.figure_format};
   if (run_all(plan, runs, options.is_quiet).runs_missing > 0 || !plan.bands) return k_success;
-  const std::string no_figure = write_bands(plan, bands_of(plan, folder), folder);
+  const std::string no_figure = write_bands(plan, bands_of(plan, folder), folder, options.figure_format);
   if (!no_figure.empty()) say("warning: no figure: {}\n", no_figure);
   if (!options.is_quiet) say("{}: bands -> {}\n", plan.name, (folder / "bands.csv").string());
   return k_success;
@@ -125,6 +127,7 @@ struct SensitivityOptions {
   std::string output;
   double confidence = 0.95;
   int threads = 0;
+  std::string format{figure::k_usual_format};
 };
 
 int sensitivity(const SensitivityOptions& options) {
@@ -134,10 +137,11 @@ int sensitivity(const SensitivityOptions& options) {
     throw UsageError(fmt::format("{}: {}", options.file, why_not));
   }
   const fs::path folder = folder_of(plan, options.output);
-  const SweepOutcome outcome =
-      run_all(plan, {.folder = folder, .threads = options.threads, .shard = {}, .progress = {}});
+  const SweepOutcome outcome = run_all(
+      plan,
+      {.folder = folder, .threads = options.threads, .shard = {}, .progress = {}, .figure_format = options.format});
   const std::vector<ResultSensitivity> found = sensitivities_of(plan, outcome.results, options.confidence);
-  const std::string no_figure = write_sensitivities(plan, found, folder);
+  const std::string no_figure = write_sensitivities(plan, found, folder, options.format);
   print_data("{}", sensitivity_text(plan, found));
   for (const ResultSensitivity& result : found) {
     for (const std::string& warning : result.warnings) say("warning: {}\n", warning);
@@ -164,6 +168,8 @@ void add_sweep_command(CLI::App& app, Action& action) {
                    "Format of the results, csv or hdf5 [that of results that are there, else csv]")
       ->type_name("FORMAT")
       ->check(CLI::IsMember(k_results_formats));
+  add_figure_format(*command, options->figure_format)
+      ->description("Format of the figure of the bands: svg, pdf or png [svg]");
   command->add_flag("--design-only", options->makes_design_only,
                     "Write the runs to design.csv and print the criterion psi; run nothing");
   command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
@@ -184,6 +190,7 @@ void add_sensitivity_command(CLI::App& app, Action& action) {
       ->check(CLI::Range(1e-6, 1.0 - 1e-6))
       ->check(is_no_nan());
   command->add_option("-o,--output", options->output, "Folder of the results [runs/NAME]");
+  add_figure_format(*command, options->format);
   command->footer("Example: monograin sensitivity scenarios/sweeps/sobol-indices.toml");
   command->callback([options, &action] { action = [options] { return sensitivity(*options); }; });
 }

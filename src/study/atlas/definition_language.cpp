@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "figure/figure.hpp"
 #include "study/atlas/adhesion_map.hpp"
 
 namespace monograin::definition {
@@ -54,10 +55,9 @@ void append_shared_keys(Keys& keys) {
 }  // namespace
 
 Keys root_keys() {
-  static constexpr std::array<std::string_view, 3> formats{"svg", "pdf", "png"};
   Keys keys{required(key_of(Kind::text, "title", "what the figure shows", "\"Force over displacement\"")),
             required(key_of(Kind::text, "source", "figure and document that show it too", "\"Fig. 8 of ...\"")),
-            first_by_default(choice_key("format", "format of the figure", formats)),
+            first_by_default(choice_key("format", "format of the figure", figure::k_formats)),
             key_of(Kind::table, "scenario", "the scenario of curves that name no file", "[scenario]"),
             key_of(Kind::table, "adhesion_map", "phase diagrams of adhesion as panels", "[adhesion_map]"),
             key_of(Kind::tables, "panel", "panels of the figure", "[[panel]]"),

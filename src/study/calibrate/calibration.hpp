@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "figure/figure.hpp"
 #include "history/staged_folder.hpp"
 #include "history/table.hpp"
 #include "numerics/intervals.hpp"
@@ -231,13 +232,15 @@ inline constexpr const char* k_particle_force = "particle_force";
 inline constexpr const char* k_without_machine =
     "Displacement and force are the particle's, without what the machine adds: those of fit.csv";
 
-/// Writes fit.csv, fitted.toml with the tables it names, calibration.json and figure.svg with its script and data; all
-/// of them or none.
+/// Writes fit.csv, fitted.toml with the tables it names, calibration.json and a figure with its script and data; all of
+/// them or none.
 /// @param folder      made with k_calibration_marker
 /// @param has_report  true: writes report.md and report.pdf, too
+/// @param format      of the figure, one of figure::k_formats
 /// @return why there is no figure; empty: there is one
 /// @throws std::runtime_error naming what could not be written
 [[nodiscard]] std::string write_calibration(const Calibration& calibration, const CalibrationResult& result,
-                                            StagedFolder& folder, bool has_report = false);
+                                            StagedFolder& folder, bool has_report = false,
+                                            std::string_view format = figure::k_usual_format);
 
 }  // namespace monograin

@@ -138,8 +138,8 @@ std::string draw(figure::Chart chart, const Calibration& calibration, const fs::
 
 }  // namespace
 
-std::string draw_calibration(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {
-  return draw(chart_of(calibration, result), calibration, folder / "figure.svg");
+std::string draw_calibration(const Calibration& calibration, const CalibrationResult& result, const fs::path& figure) {
+  return draw(chart_of(calibration, result), calibration, figure);
 }
 
 std::string draw_report(const Calibration& calibration, const CalibrationResult& result, const fs::path& folder) {

@@ -9,9 +9,9 @@
 
 namespace monograin {
 
-/// Draws figure.svg with its script and data. @return why there is no figure; empty: there is one
+/// Draws data, fit and residuals. @return why there is no figure; empty: there is one
 [[nodiscard]] std::string draw_calibration(const Calibration& calibration, const CalibrationResult& result,
-                                           const std::filesystem::path& folder);
+                                           const std::filesystem::path& figure);
 
 /// Draws the fits of several models over their common data. @return why there is no figure; empty: there is one
 [[nodiscard]] std::string draw_comparison(std::span<const Calibration> calibrations,

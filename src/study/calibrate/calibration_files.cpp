@@ -321,16 +321,18 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
 }
 
 std::string write_calibration(const Calibration& calibration, const CalibrationResult& result, StagedFolder& folder,
-                              bool has_report) {
+                              bool has_report, std::string_view format) {
   write_text_file(folder.path() / k_calibration_tables[0], csv_text(fit_table(calibration, result)));
   write_text_file(folder.path() / k_calibration_tables[1], fitted_scenario_text(calibration, result));
   for (const auto& [name, text] : fitted_scenario_files(calibration)) {
     write_text_file(folder.path() / name, text);
   }
   write_text_file(folder.path() / k_calibration_marker, calibration_json(calibration, result));
-  std::string problem = draw_calibration(calibration, result, folder.path());
+  const std::string figure = fmt::format("figure.{}", format);
+  std::string problem = draw_calibration(calibration, result, folder.path() / figure);
   if (has_report) {
-    write_text_file(folder.path() / "report.md", calibration_report(calibration, result, problem.empty()));
+    write_text_file(folder.path() / "report.md",
+                    calibration_report(calibration, result, problem.empty() ? figure : ""));
     if (problem.empty()) problem = draw_report(calibration, result, folder.path());
   }
   folder.publish(folder.age());

@@ -251,12 +251,13 @@ ReportLines report_lines(const Calibration& calibration, const CalibrationResult
   return lines;
 }
 
-std::string calibration_report(const Calibration& calibration, const CalibrationResult& result, bool has_figure) {
+std::string calibration_report(const Calibration& calibration, const CalibrationResult& result,
+                               const std::string& figure) {
   std::string text = fmt::format("# {}\n\nModel `{}`, scenario `{}`, monograin {}.\n",
                                  calibration.title.empty() ? calibration.name : calibration.title,
                                  calibration.scenario.model, calibration.scenario.name, version());
   text += list_of("Data", data_lines(calibration));
-  if (has_figure) text += "\n![data, fit and residuals](figure.svg)\n";
+  if (!figure.empty()) text += fmt::format("\n![data, fit and residuals]({})\n", figure);
   for (TitledTable& table : tables_of(calibration, result)) {
     text += fmt::format("\n## {}\n\n", table.title);
     if (!table.has_headings) table.rows.insert(table.rows.begin(), {"quantity", "value"});

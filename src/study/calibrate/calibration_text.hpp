@@ -22,9 +22,9 @@ namespace monograin {
                                                     const Uncertainty& uncertainty);
 
 /// A report in Markdown: data, figure, parameters with intervals, residuals, warnings, sources.
-/// @param has_figure  true if figure.svg lies beside the report
+/// @param figure  name of the file beside the report; empty: there is none
 [[nodiscard]] std::string calibration_report(const Calibration& calibration, const CalibrationResult& result,
-                                             bool has_figure);
+                                             const std::string& figure);
 
 /// Lines of the report, above a figure of the fit and below it.
 struct ReportLines {

@@ -214,10 +214,10 @@ std::string comparison_text(std::span<const Calibration> calibrations, std::span
 }
 
 std::string comparison_report(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
-                              const ModelComparison& comparison, bool has_figure) {
+                              const ModelComparison& comparison, const std::string& figure) {
   std::string text = fmt::format("# Fits to {}\n\n```text\n{}```\n", data_names(calibrations.front()),
                                  comparison_text(calibrations, results, comparison));
-  if (has_figure) text += "\n![data, fits and residuals](comparison.svg)\n";
+  if (!figure.empty()) text += fmt::format("\n![data, fits and residuals]({})\n", figure);
   text += "\n## Reports of the fits\n\n";
   for (const Calibration& calibration : calibrations) {
     text += fmt::format("- [{0}]({0}/report.md)\n", calibration.name);
@@ -226,11 +226,14 @@ std::string comparison_report(std::span<const Calibration> calibrations, std::sp
 }
 
 std::string write_comparison(std::span<const Calibration> calibrations, std::span<const CalibrationResult> results,
-                             const ModelComparison& comparison, StagedFolder& folder, bool has_report) {
+                             const ModelComparison& comparison, StagedFolder& folder, bool has_report,
+                             std::string_view format) {
   write_text_file(folder.path() / k_comparison_marker, csv_text(table_of(calibrations, results, comparison)));
-  std::string problem = draw_comparison(calibrations, results, folder.path() / "comparison.svg");
+  const std::string figure = fmt::format("comparison.{}", format);
+  std::string problem = draw_comparison(calibrations, results, folder.path() / figure);
   if (has_report) {
-    write_text_file(folder.path() / "report.md", comparison_report(calibrations, results, comparison, problem.empty()));
+    write_text_file(folder.path() / "report.md",
+                    comparison_report(calibrations, results, comparison, problem.empty() ? figure : ""));
   }
   folder.publish(folder.age());
   return problem;

@@ -5,8 +5,10 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "figure/figure.hpp"
 #include "history/staged_folder.hpp"
 #include "study/calibrate/calibration.hpp"
 
@@ -48,16 +50,18 @@ void check_comparable(std::span<const Calibration> calibrations);
 inline constexpr const char* k_comparison_marker = "comparison.csv";
 
 /// The comparison in Markdown, with the figure and links to the reports of the fits in folders of their names.
+/// @param figure  name of the file beside the report; empty: there is none
 [[nodiscard]] std::string comparison_report(std::span<const Calibration> calibrations,
                                             std::span<const CalibrationResult> results,
-                                            const ModelComparison& comparison, bool has_figure);
+                                            const ModelComparison& comparison, const std::string& figure);
 
-/// Writes comparison.csv and comparison.svg with its script and data.
+/// Writes comparison.csv and the figure `comparison` with its script and data.
 /// @param has_report  true: writes report.md, too
+/// @param format      of the figure, one of figure::k_formats
 /// @return why there is no figure; empty: there is one
 [[nodiscard]] std::string write_comparison(std::span<const Calibration> calibrations,
                                            std::span<const CalibrationResult> results,
                                            const ModelComparison& comparison, StagedFolder& folder,
-                                           bool has_report = false);
+                                           bool has_report = false, std::string_view format = figure::k_usual_format);
 
 }  // namespace monograin

@@ -23,7 +23,6 @@
 namespace monograin {
 namespace {
 
-constexpr const char* k_figure = "figure.svg";
 // Okabe and Ito (2008), for readers who do not see all colours.
 constexpr std::array<unsigned, 7> k_colours{0x999999, 0x0072B2, 0xE69F00, 0x009E73, 0xCC79A7, 0x56B4E9, 0xD55E00};
 constexpr double k_half_bar = 0.3;
@@ -153,13 +152,13 @@ figure::ChartPanel error_panel(const ExperimentPlan& plan, const std::vector<Nam
 }
 
 std::string draw(const ExperimentPlan& plan, const std::vector<NamedErrors>& sets,
-                 const std::filesystem::path& folder) {
+                 const std::filesystem::path& figure) {
   figure::Chart chart{.area_heading = "Program"};
   for (std::size_t k = 0; k < plan.free.size(); ++k) {
     if (plan.values[k] != 0.0) chart.panels.push_back(error_panel(plan, sets, k));
   }
   chart.references = reference_texts(*find_model(plan.scenario.model));
-  return figure::try_to_draw(chart, "expected errors of " + plan.name, folder / k_figure);
+  return figure::try_to_draw(chart, "expected errors of " + plan.name, figure);
 }
 
 }  // namespace
@@ -214,10 +213,11 @@ Table identify_table(const ExperimentPlan& plan, const IdentifyResult& result) {
   return table;
 }
 
-std::string write_identify(const ExperimentPlan& plan, const IdentifyResult& result, StagedFolder& folder) {
+std::string write_identify(const ExperimentPlan& plan, const IdentifyResult& result, StagedFolder& folder,
+                           std::string_view format) {
   write_text_file(folder.path() / k_identify_marker, csv_text(identify_table(plan, result)));
   write_text_file(folder.path() / "design.json", record_text(record_json(plan)));
-  const std::string problem = draw(plan, all_sets(plan, result), folder.path());
+  const std::string problem = draw(plan, all_sets(plan, result), folder.path() / fmt::format("figure.{}", format));
   folder.publish(folder.age());
   return problem;
 }

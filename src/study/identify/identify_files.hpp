@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
+#include "figure/figure.hpp"
 #include "history/staged_folder.hpp"
 #include "history/table.hpp"
 #include "study/identify/identify.hpp"
@@ -19,12 +21,13 @@ namespace monograin {
 /// The file that marks a folder of these results.
 inline constexpr const char* k_identify_marker = "errors.csv";
 
-/// Writes errors.csv; design.json, which repeats the plan; and figure.svg, a bar of the relative error for each
-/// candidate and a panel for each parameter, with its script and data; all of them or none.
+/// Writes errors.csv; design.json, which repeats the plan; and a figure, a bar of the relative error for each candidate
+/// and a panel for each parameter, with its script and data; all of them or none.
 /// @param folder  made with k_identify_marker
+/// @param format  of the figure, one of figure::k_formats
 /// @return why there is no figure; empty: there is
 /// @throws std::runtime_error naming what could not be written
-[[nodiscard]] std::string write_identify(const ExperimentPlan& plan, const IdentifyResult& result,
-                                         StagedFolder& folder);
+[[nodiscard]] std::string write_identify(const ExperimentPlan& plan, const IdentifyResult& result, StagedFolder& folder,
+                                         std::string_view format = figure::k_usual_format);
 
 }  // namespace monograin

@@ -264,11 +264,13 @@ HistoryBands bands_of(const Sweep& sweep, const fs::path& folder) {
   return bands;
 }
 
-std::string write_bands(const Sweep& sweep, const HistoryBands& bands, const fs::path& folder) {
+std::string write_bands(const Sweep& sweep, const HistoryBands& bands, const fs::path& folder,
+                        std::string_view format) {
   write_csv(folder / k_bands_file, table_of(sweep, bands));
   figure::Chart chart;
   for (std::size_t y = 0; y < bands.y.size(); ++y) chart.panels.push_back(panel_of(sweep, bands, y));
-  return figure::try_to_draw(chart, "percentiles of the histories of sweep " + sweep.name, folder / "bands.svg");
+  return figure::try_to_draw(chart, "percentiles of the histories of sweep " + sweep.name,
+                             folder / fmt::format("bands.{}", format));
 }
 
 }  // namespace monograin

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "figure/figure.hpp"
 #include "history/table.hpp"
 #include "study/sweep/sweep_file.hpp"
 
@@ -36,10 +38,12 @@ struct HistoryBands {
 /// history
 [[nodiscard]] HistoryBands bands_of(const Sweep& sweep, const std::filesystem::path& folder);
 
-/// Writes bands.csv, with a row for each step and abscissa, and bands.svg: median and outermost percentiles, a panel
-/// for each y.
+/// Writes bands.csv, with a row for each step and abscissa, and the figure `bands`: median and outermost percentiles, a
+/// panel for each y.
+/// @param format  of the figure, one of figure::k_formats
 /// @return why there is no figure; empty: there is one
 [[nodiscard]] std::string write_bands(const Sweep& sweep, const HistoryBands& bands,
-                                      const std::filesystem::path& folder);
+                                      const std::filesystem::path& folder,
+                                      std::string_view format = figure::k_usual_format);
 
 }  // namespace monograin

@@ -257,11 +257,11 @@ std::string sensitivity_text(const Sweep& sweep, const std::vector<ResultSensiti
   return text;
 }
 
-std::string write_sensitivities(const Sweep& sweep, const std::vector<ResultSensitivity>& found,
-                                const fs::path& folder) {
+std::string write_sensitivities(const Sweep& sweep, const std::vector<ResultSensitivity>& found, const fs::path& folder,
+                                std::string_view format) {
   write_csv(folder / k_sensitivities_file, sensitivity_table(sweep, found));
   return figure::try_to_draw(chart_of(sweep, found), "sensitivities of sweep " + sweep.name,
-                             folder / "sensitivity.svg");
+                             folder / fmt::format("sensitivity.{}", format));
 }
 
 }  // namespace monograin

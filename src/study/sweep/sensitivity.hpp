@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "figure/figure.hpp"
 #include "study/sweep/indices.hpp"
 #include "study/sweep/sweep_file.hpp"
 
@@ -37,10 +39,12 @@ struct ResultSensitivity {
 /// Sensitivities as text for the terminal.
 [[nodiscard]] std::string sensitivity_text(const Sweep& sweep, const std::vector<ResultSensitivity>& found);
 
-/// Writes sensitivity.csv, with a row for each result and factor, and sensitivity.svg, with a panel for each result:
+/// Writes sensitivity.csv, with a row for each result and factor, and a figure with a panel for each result:
 /// indices with their intervals, or the spread of elementary effects over their mean size.
+/// @param format  of the figure, one of figure::k_formats
 /// @return why there is no figure; empty: there is one
 [[nodiscard]] std::string write_sensitivities(const Sweep& sweep, const std::vector<ResultSensitivity>& found,
-                                              const std::filesystem::path& folder);
+                                              const std::filesystem::path& folder,
+                                              std::string_view format = figure::k_usual_format);
 
 }  // namespace monograin

@@ -201,8 +201,9 @@ void summarise(const Table& history, const std::vector<std::string>& wanted, Lay
   return files;
 }
 
-/// @param results  the file that is to be written
-void prepare(const fs::path& folder, const fs::path& results) {
+/// @param results        the file that is to be written
+/// @param figure_format  of the figure that is to be drawn from it
+void prepare(const fs::path& folder, const fs::path& results, std::string_view figure_format) {
   if (fs::exists(folder / k_run_marker) || fs::exists(folder / k_written_files)) {
     throw std::runtime_error(
         fmt::format("{}: holds the result of another command; choose another folder", folder.string()));
@@ -211,7 +212,7 @@ void prepare(const fs::path& folder, const fs::path& results) {
   expect_own_file(folder / k_sweep_record, folder / k_sweep_record);
   for (const char* name : k_made_from_results) {
     expect_own_file(folder / name, folder / name);
-    figure::expect_own_figure((folder / name).replace_extension(".svg"));
+    figure::expect_own_figure((folder / name).replace_extension(figure_format));
   }
   if (fs::is_directory(folder / "histories")) {
     for (const auto& entry : fs::directory_iterator(folder / "histories")) {
@@ -225,9 +226,8 @@ void prepare(const fs::path& folder, const fs::path& results) {
 /// histories. prepare() has found them to be the program's own.
 void remove_leftovers(const Sweep& sweep, const fs::path& folder) {
   for (const char* name : k_made_from_results) {
-    for (const char* extension : {".csv", ".svg", ".gp", ".dat"}) {
-      fs::remove((folder / name).replace_extension(extension));
-    }
+    fs::remove(folder / name);
+    figure::remove_own_figure((folder / name).replace_extension(".gp"));
   }
   const fs::path histories = folder / "histories";
   if (!fs::is_directory(histories)) return;
@@ -397,7 +397,7 @@ fs::path folder_of(const Sweep& sweep, const fs::path& chosen) {
 SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   const ResultsFormat format = options.format.value_or(format_in(options.folder));
   if (format == ResultsFormat::hdf5) expect_hdf5();
-  prepare(options.folder, results_file(options.folder, format));
+  prepare(options.folder, results_file(options.folder, format), options.figure_format);
   SweepOutcome outcome;
   {
     const FolderLock lock(options.folder);

@@ -6,8 +6,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "figure/figure.hpp"
 #include "study/sweep/sweep_file.hpp"
 #include "study/sweep/sweep_results.hpp"
 
@@ -28,6 +30,8 @@ struct SweepOptions {
   /// Format of the results; none: that of the results of any sweep in the folder, CSV if there are none. Results of
   /// this sweep in another format are converted, and stay.
   std::optional<ResultsFormat> format{};
+  /// Format of the figure that is to be drawn from the results, one of figure::k_formats.
+  std::string_view figure_format = figure::k_usual_format;
 };
 
 /// Progress of a sweep.

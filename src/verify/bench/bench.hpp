@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/drive.hpp"
+#include "figure/figure.hpp"
 #include "scenario/scenario.hpp"
 
 namespace monograin {
@@ -110,14 +112,17 @@ struct BenchList {
                                      const std::vector<BenchSaving>& savings);
 
 /// Writes bench.csv, bench.md and the figures: one for each scene, a summary, and one of the events.
+/// @param format  of the figures, one of figure::k_formats
 /// @return the files @throws FigureError
 std::vector<std::filesystem::path> write_bench(const std::vector<BenchScene>& scenes,
                                                const std::vector<BenchProfile>& profiles,
                                                const std::vector<BenchSaving>& savings,
-                                               const std::filesystem::path& folder);
+                                               const std::filesystem::path& folder,
+                                               std::string_view format = figure::k_usual_format);
 
 /// Draws the figures of an earlier bench again from its bench.csv, without measuring.
 /// @return the figures @throws FigureError, or std::runtime_error if the file is not that of a bench
-std::vector<std::filesystem::path> redraw_bench(const std::filesystem::path& csv, const std::filesystem::path& folder);
+std::vector<std::filesystem::path> redraw_bench(const std::filesystem::path& csv, const std::filesystem::path& folder,
+                                                std::string_view format = figure::k_usual_format);
 
 }  // namespace monograin

@@ -406,7 +406,7 @@ constexpr double k_least_error = 1e-16;  ///< figures show an error of zero as t
 }
 
 std::vector<fs::path> draw_bench(const std::vector<BenchScene>& scenes, const std::string& machine,
-                                 const fs::path& folder) {
+                                 const fs::path& folder, std::string_view format) {
   const figure::ChartAxis error{.label = "Error of the curve, at least 10^{−16}", .is_logarithmic = true};
   const figure::ChartAxis time{.label = "Time of one history [ms]", .is_logarithmic = true};
   const figure::ChartAxis rtol{.label = "Relative tolerance", .is_logarithmic = true};
@@ -424,7 +424,7 @@ std::vector<fs::path> draw_bench(const std::vector<BenchScene>& scenes, const st
   std::erase_if(charts, [](const auto& named) { return named.second.panels.empty(); });
   std::vector<figure::FigureFiles> files;
   for (const auto& [name, chart] : charts) {
-    files.emplace_back(folder / (name + ".svg"));
+    files.emplace_back(folder / fmt::format("{}.{}", name, format));
     figure::expect_own_figure(files.back().figure());
   }
   std::vector<fs::path> written;
@@ -470,7 +470,7 @@ std::string bench_text(const std::vector<BenchScene>& scenes, const std::vector<
   return text;
 }
 
-std::vector<fs::path> redraw_bench(const fs::path& csv, const fs::path& folder) {
+std::vector<fs::path> redraw_bench(const fs::path& csv, const fs::path& folder, std::string_view format) {
   const Table table = read_csv(csv);
   const auto words = [&](std::string_view name) {
     const auto found = table.find(name);
@@ -507,12 +507,13 @@ std::vector<fs::path> redraw_bench(const fs::path& csv, const fs::path& folder) 
     point.event_error = event_error[row];
     point.fastest = fastest[row];
   }
-  return draw_bench(scenes, std::string(table.header_value("machine")), folder);
+  return draw_bench(scenes, std::string(table.header_value("machine")), folder, format);
 }
 
 std::vector<fs::path> write_bench(const std::vector<BenchScene>& scenes, const std::vector<BenchProfile>& profiles,
-                                  const std::vector<BenchSaving>& savings, const fs::path& folder) {
-  std::vector<fs::path> written = draw_bench(scenes, machine_text(), folder);
+                                  const std::vector<BenchSaving>& savings, const fs::path& folder,
+                                  std::string_view format) {
+  std::vector<fs::path> written = draw_bench(scenes, machine_text(), folder, format);
   fs::create_directories(folder);
   write_text_file(folder / "bench.csv", csv_text(csv_of(scenes), k_measured_digits));
   write_text_file(folder / "bench.md", bench_text(scenes, profiles, savings));

@@ -1036,7 +1036,7 @@ TEST_F(CalibrationTest, AReportHasARowForEachParameterWhereOnlyOneIsAtItsBound) 
         replaced(k_calibration, "300 GPa", "50 GPa") + "\"data.offset\" = { from = \"-0.1 mm\", to = \"0.1 mm\" }\n");
   write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
   const Calibration calibration = read();
-  const std::string report = calibration_report(calibration, calibrate(calibration), false);
+  const std::string report = calibration_report(calibration, calibrate(calibration), "");
   const auto cells_of = [&](const std::string& name) {
     const std::size_t begin = report.find("| " + name + " ");
     const std::string row = report.substr(begin, report.find('\n', begin) - begin);

@@ -604,9 +604,10 @@ TEST_F(SweepFiles, NothingOfAnEarlierSweepStaysBesideTheResultsOfAnother) {
   const Sweep first = read(k_grid + bands);
   static_cast<void>(results(first, "out"));
   ASSERT_EQ(std::distance(fs::directory_iterator(path("out") / "histories"), {}), 12);
-  for (const char* name : {"bands.csv", "bands.gp", "sensitivity.csv"})
-    write(std::string("out/") + name, "# title: a\n");
+  for (const char* name : {"bands.csv", "sensitivity.csv"}) write(std::string("out/") + name, "# title: a\n");
+  write("out/bands.gp", "# Draws './bands.svg'. To be run in its own folder, as gnuplot ./NAME.gp\n");
   write("out/bands.svg", "<svg/>");
+  write("out/bands.dat", "# percentiles\n");
   write("out/histories/notes.txt", "of the user");
   write("out/plan.txt", "of the user");
   const std::string only = "scenario = \"small.toml\"\n[vary]\n\"material.poisson_ratio\" = { values = [0.2, 0.3] }\n";
