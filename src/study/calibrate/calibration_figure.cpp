@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <iterator>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "catalogue.hpp"
 #include "figure/chart.hpp"
@@ -18,6 +21,8 @@ namespace monograin {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t k_most_panels = 5;  ///< for residuals of curves
 
 /// Label of an axis, with the observable's last part and the unit: "Contact radius [mm]".
 std::string label_of(const MeasuredQuantity& quantity) {
@@ -35,9 +40,50 @@ std::vector<double> in_unit(const std::vector<double>& values, const MeasuredQua
 }
 
 /// Name of a curve: its overrides, else its file.
-std::string name_of(const MeasuredCurve& curve) {
-  return curve.overrides.empty() ? fs::path(curve.file).stem().string()
-                                 : fmt::format("{}", fmt::join(curve.overrides, ", "));
+/// @param has_sections  true: keys with the names of their sections
+std::string name_of(const MeasuredCurve& curve, bool has_sections) {
+  if (curve.overrides.empty()) return fs::path(curve.file).stem().string();
+  std::vector<std::string> overrides = curve.overrides;
+  for (std::string& text : overrides) {
+    if (!has_sections) text = text.substr(text.substr(0, text.find('=')).rfind('.') + 1);
+  }
+  return fmt::format("{}", fmt::join(overrides, ", "));
+}
+
+/// Names of all curves as gnuplot's enhanced text. Sections are left out unless they tell curves apart.
+std::vector<std::string> names_of(const std::vector<MeasuredCurve>& curves) {
+  std::vector<std::string> names;
+  for (const bool has_sections : {false, true}) {
+    names.clear();
+    for (const MeasuredCurve& curve : curves) names.push_back(figure::verbatim_text(name_of(curve, has_sections)));
+    if (std::set<std::string>(names.begin(), names.end()).size() == names.size()) break;
+  }
+  return names;
+}
+
+/// Gives panels the same ordinate, so that they can be compared.
+void share_ordinate(std::span<figure::ChartPanel> panels) {
+  constexpr double k_air = 0.05;  // share of the range left free beyond the values
+  double lowest = 0.0;
+  double highest = 0.0;
+  const auto include = [&](const std::vector<double>& values) {
+    for (const double value : values) {
+      lowest = std::fmin(lowest, value);
+      highest = std::fmax(highest, value);
+    }
+  };
+  for (const figure::ChartPanel& panel : panels) {
+    for (const figure::ChartSeries& series : panel.series) include(series.y);
+    for (const figure::ChartBand& band : panel.bands) {
+      include(band.lower);
+      include(band.upper);
+    }
+  }
+  if (!(lowest < highest)) return;
+  for (figure::ChartPanel& panel : panels) {
+    panel.y.lowest = lowest - k_air * (highest - lowest);
+    panel.y.highest = highest + k_air * (highest - lowest);
+  }
 }
 
 /// "Data - fit: force [N]".
@@ -51,23 +97,30 @@ figure::Chart chart_of(const Calibration& calibration, const CalibrationResult& 
   const std::string x_label = label_of(calibration.x);
   const std::string y_label = label_of(calibration.y);
   figure::ChartPanel curves{.x = {.label = x_label}, .y = {.label = y_label}};
-  figure::ChartPanel rest{.x = {.label = x_label}, .y = {.label = data_less_fit(y_label)}};
+  const figure::ChartPanel empty{.x = {.label = x_label}, .y = {.label = data_less_fit(y_label)}};
+  const std::vector<std::string> names = names_of(calibration.curves);
+  // Residuals of several curves lie on each other in one panel.
+  const bool has_own_panels = names.size() > 1 && names.size() <= k_most_panels;
+  std::vector<figure::ChartPanel> rests(has_own_panels ? names.size() : 1, empty);
   const std::vector<double> x = in_unit(calibration.x.values, calibration.x);
   const std::vector<double> y = in_unit(calibration.y.values, calibration.y);
   for (std::size_t c = 0; c < calibration.curves.size(); ++c) {
     const MeasuredCurve& measured = calibration.curves[c];
     const FittedCurve& fitted = result.curves[c];
     const bool is_only_one = calibration.curves.size() == 1;
-    const std::string suffix = is_only_one ? "" : ": " + figure::verbatim_text(name_of(measured));
+    const std::string suffix = is_only_one ? "" : ": " + names[c];
+    figure::ChartPanel& rest = rests[has_own_panels ? c : 0];
+    if (has_own_panels) rest.note = names[c];
     const auto own_colour = is_only_one ? std::nullopt : std::optional(c);
     const std::vector<double> curve_x = in_unit(fitted.x, calibration.x);
     const std::vector<double> curve_y = in_unit(fitted.y, calibration.y);
     const auto band = [&](const std::vector<double>& middle) {
-      figure::ChartBand made{.legend = fmt::format("{:g} % confidence band", 100.0 * result.uncertainty.level),
-                             .colour = 0x9FC5E8,
-                             .x = curve_x,
-                             .lower = middle,
-                             .upper = middle};
+      figure::ChartBand made{
+          .legend = fmt::format("{:g} % confidence band of the fit", 100.0 * result.uncertainty.level),
+          .colour = 0x9FC5E8,
+          .x = curve_x,
+          .lower = middle,
+          .upper = middle};
       for (std::size_t i = 0; i < middle.size(); ++i) {
         made.lower[i] -= fitted.band[i] / calibration.y.unit_factor;
         made.upper[i] += fitted.band[i] / calibration.y.unit_factor;
@@ -93,7 +146,10 @@ figure::Chart chart_of(const Calibration& calibration, const CalibrationResult& 
     rest.series.push_back(
         {.legend = "data" + suffix, .style = Style::points, .colour = own_colour, .x = own_x, .y = residuals});
   }
-  return {{std::move(curves), std::move(rest)}};
+  if (has_own_panels) share_ordinate(rests);
+  figure::Chart chart{{std::move(curves)}};
+  std::ranges::move(rests, std::back_inserter(chart.panels));
+  return chart;
 }
 
 /// Figure with the data and the fits of all models over them, and the residuals below.

@@ -1340,6 +1340,31 @@ TEST_F(CalibrationTest, FitsSeveralCurvesTogetherEachWithItsOverrides) {
   EXPECT_EQ(json.at("data")[1].at("set")[0], "material.poisson_ratio=0.4");
 }
 
+TEST_F(CalibrationTest, DrawsTheResidualsOfEachCurveInAPanelOfItsOwn) {
+  const auto rows = noisy_hertz();
+  write("d.csv", csv_of(rows, "displacement[m],force[N],w"));
+  write("e.csv", csv_of(std::vector<Row>(rows.begin(), rows.begin() + 12), "displacement[m],force[N],w"));
+  write("c.toml", k_two_curves);
+  const Calibration calibration = read();
+  EXPECT_EQ(written(calibration, calibrate(calibration), folder() / "out"), "");
+  const std::string script = text_of("out/figure.gp");
+  for (const char* part : {"set label 5 'd' at graph", "set label 5 'poisson\\_ratio=0.4' at graph", "'(c)' at graph",
+                           "'data: poisson\\_ratio=0.4"}) {
+    EXPECT_TRUE(contains(script, part)) << part << '\n' << script;
+  }
+  EXPECT_FALSE(contains(script, "'(d)' at graph")) << script;
+  const std::regex range("set yrange (\\[[^\\]]+\\])");
+  std::vector<std::string> ranges;
+  for (std::sregex_iterator it(script.begin(), script.end(), range), end; it != end; ++it) ranges.push_back((*it)[1]);
+  ASSERT_EQ(ranges.size(), 3U) << script;
+  EXPECT_EQ(ranges[1], ranges[2]) << "to compare the residuals";
+  // Residuals, not forces, of the second curve alone.
+  const std::string data = text_of("out/figure.dat");
+  const std::size_t begin = data.find("# panel 3 series 1.");
+  ASSERT_NE(begin, std::string::npos) << data;
+  EXPECT_EQ(std::ranges::count(data.substr(begin), '\n'), 1 + 12) << data.substr(begin);
+}
+
 TEST_F(CalibrationTest, RefusesADirectSolutionThatTheSceneDoesNotHave) {
   const std::string message = "integrator = \"direct\": the state of this scene depends on the path to it";
   const std::string coupled = replaced(k_mdr, "\"mdr\"", "\"cel\"");
