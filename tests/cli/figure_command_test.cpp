@@ -76,6 +76,18 @@ TEST_F(FigureCommand, EveryCommandWithAFigureTakesItsFormat) {
   expect_figure("bench --redraw one.csv -o bench", "bench/bench-die", "pdf");
 }
 
+TEST_F(FigureCommand, ElementaryEffectsHaveTheUnitOfTheirResult) {
+  std::string effects = text("indices.toml");
+  effects.replace(effects.find("saltelli"), 8, "morris");
+  effects.replace(effects.find("[\"max.axial.force\"]"), 19, "[\"max.axial.force\", \"max.axial.force / 2\"]");
+  write_text(path("effects.toml"), effects);
+  ASSERT_EQ(monograin("sensitivity effects.toml -o effects").code, 0) << text("stderr.txt");
+  const std::string script = text("effects/sensitivity.gp");
+  EXPECT_NE(script.find("Mean size of effects, 95 % intervals [N]"), std::string::npos) << script;
+  EXPECT_NE(script.find("Their standard deviation [N]"), std::string::npos) << script;
+  EXPECT_NE(script.find("Mean size of effects, 95 % intervals'"), std::string::npos) << "of a formula: " << script;
+}
+
 TEST_F(FigureCommand, ReportsOfFitsNameTheirFigures) {
   const std::string fits = std::string("'") + k_source + "/scenarios/calibrate/cel.toml' '" + k_source +
                            "/scenarios/calibrate/cel-by-mdr.toml'";

@@ -101,8 +101,9 @@ using Style = figure::ChartSeries::Style;
 }
 
 [[nodiscard]] figure::ChartPanel effect_panel(const Sweep& sweep, const ResultSensitivity& found) {
-  figure::ChartPanel panel{.x = {.label = "Mean size of the effects; bars: " + interval_text(found), .lowest = 0.0},
-                           .y = {.label = "Their standard deviation", .lowest = 0.0},
+  const std::string unit = found.unit.empty() ? "" : fmt::format(" [{}]", figure::verbatim_text(found.unit));
+  figure::ChartPanel panel{.x = {.label = "Mean size of effects, " + interval_text(found) + unit, .lowest = 0.0},
+                           .y = {.label = "Their standard deviation" + unit, .lowest = 0.0},
                            .note = note_of(found)};
   for (std::size_t k = 0; k < sweep.factors.size(); ++k) {
     const auto& [size, lower, upper] = found.morris.mean_size[k];
@@ -218,7 +219,9 @@ std::vector<ResultSensitivity> sensitivities_of(const Sweep& sweep, const fs::pa
   std::vector<ResultSensitivity> found;
   for (const std::string& formula : sweep.results) {
     const std::vector<double> values = values_of(formula, results);
-    ResultSensitivity result{.result = formula, .confidence = confidence};
+    const auto column = results.find(formula);
+    const std::string unit = column ? results.columns()[*column].unit : std::string();
+    ResultSensitivity result{.result = formula, .unit = unit == "-" ? "" : unit, .confidence = confidence};
     if (is_morris(sweep)) {
       result.morris = morris_effects(sweep.points, values, confidence);
     } else {

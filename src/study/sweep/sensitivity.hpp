@@ -18,6 +18,7 @@ inline constexpr const char* k_sensitivities_file = "sensitivity.csv";
 /// One result with its indices or its effects, depending on the design; the other member is empty.
 struct ResultSensitivity {
   std::string result;       ///< its formula
+  std::string unit{};       ///< of a result that is a column; empty: none, or unknown
   double confidence = 0.0;  ///< level of the two-sided intervals
   SobolIndices sobol{};
   MorrisEffects morris{};
