@@ -105,8 +105,7 @@ struct Pair {
   std::vector<double> values;
   for (std::size_t row = 0; row < table.row_count(); ++row) values.push_back(table.at(row, column));
   std::ranges::sort(values);
-  const auto repeated = std::ranges::unique(values);
-  values.erase(repeated.begin(), repeated.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;
 }
 
@@ -123,9 +122,10 @@ struct Pair {
 }
 
 /// Points of a sweep; those with the same value of the telling key are a series.
+/// @param all  all points; with a legend they remain one series
 [[nodiscard]] std::vector<ChartSeries> points_of_sweep(const Table& results, std::size_t x, ChartSeries all) {
   all.style = ChartSeries::Style::points;
-  const auto key = telling_key(results, x);
+  const auto key = all.legend.empty() ? telling_key(results, x) : std::nullopt;
   if (!key) return {std::move(all)};
   const Column& column = results.columns()[*key];
   const std::string name = column.name.substr(column.name.rfind('.') + 1);
@@ -248,14 +248,10 @@ ColumnChart column_chart(const std::vector<fs::path>& paths, const ColumnChoice&
         throw FigureError(fmt::format("{}: column '{}' has other words", file.string(), pairs[k].x));
       }
       ChartSeries curve{.legend = paths.size() > 1 ? verbatim_text(folder.filename().string()) : std::string(),
-                        .style = is_sweep(path) ? ChartSeries::Style::points : ChartSeries::Style::phases,
                         .x = values_of(table, x, x_axis),
                         .y = values_of(table, y, y_axis)};
-      std::vector<ChartSeries>& series = figure.chart.panels[k].series;
-      if (is_sweep(path) && paths.size() == 1)
-        series = points_of_sweep(table, x, std::move(curve));
-      else
-        series.push_back(std::move(curve));
+      auto series = is_sweep(path) ? points_of_sweep(table, x, std::move(curve)) : std::vector{std::move(curve)};
+      std::ranges::move(series, std::back_inserter(figure.chart.panels[k].series));
       add_events(figure.chart.panels[k], events, pairs[k], x_axis, y_axis);
     }
   }

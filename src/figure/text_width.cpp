@@ -159,6 +159,7 @@ double text_width(std::string_view enhanced) {
 std::vector<std::string> fitted_texts(const std::vector<std::string>& enhanced, double width_cm) {
   const double room = width_cm / k_least_size;
   std::vector<LongText> texts;
+  texts.reserve(enhanced.size());
   for (const std::string& text : enhanced) texts.emplace_back(text, room);
   std::vector<std::string> fitted;
   for (const LongText& text : texts) {
