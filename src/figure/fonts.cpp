@@ -104,10 +104,10 @@ void expect_fonts(const std::string& script, const fs::path& figure, const fs::p
   if (code != 0 || charsets.text.empty()) return;
   const std::string missing = letters_without_font(drawn, charsets.text);
   if (missing.empty()) return;
-  throw FigureError(fmt::format(
-      "{}: no installed font has '{}'; install one that does (on Debian, for Chinese, Japanese and Korean: "
-      "apt-get install fonts-noto-cjk), or draw the figure as .svg, for which the reader's machine has fonts",
-      shown_path(figure).string(), missing));
+  throw FigureError(
+      fmt::format("{}: no installed font has '{}'; install one that does (on Debian, for Chinese, Japanese and Korean: "
+                  "apt-get install fonts-noto-cjk); an .svg takes the fonts of the machine that shows it",
+                  shown_path(figure).string(), missing));
 }
 
 }  // namespace monograin::figure
