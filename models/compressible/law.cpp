@@ -158,7 +158,6 @@ double recoverable_work(const UnloadingCurve& curve, double displacement) noexce
 }
 
 double unloading_displacement(const UnloadingCurve& curve, double force) noexcept {
-  if (force <= 0.0) return curve.separation();
   // expm1 keeps the digits of the distance from dm.
   return curve.largest + curve.length * std::expm1(std::log(force / curve.force) / curve.exponent);
 }

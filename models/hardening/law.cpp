@@ -115,10 +115,7 @@ ContactState state_in(const Law& law, Regime regime, double x) {
 }
 
 double approach_under(const Law& law, double force, double near) {
-  if (!(force > 0.0)) {
-    if (force <= 0.0) return 0.0;
-    throw std::domain_error("the force is not a number");
-  }
+  if (force <= 0.0) return 0.0;
   const auto fully_plastic = [&](double x) { return state_in(law, Regime::fully_plastic, x); };
   const double last = std::nextafter(law.limit, 0.0);
   const double end = end_of_fall(law);

@@ -242,10 +242,7 @@ ContactState state_in(const Law& law, Regime regime, double x) {
 }
 
 double approach_under(const Law& law, double force, double near) {
-  if (!(force > 0.0)) {
-    if (force <= 0.0) return 0.0;
-    throw std::domain_error("the force is not a number");
-  }
+  if (force <= 0.0) return 0.0;
   double lower = 0.0;
   Regime regime = Regime::elastic;
   const auto state = [&](double x) { return state_in(law, regime, x); };

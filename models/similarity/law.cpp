@@ -115,7 +115,6 @@ ContactState state_at(const Law& law, double x) {
 }
 
 double approach_under(const Law& law, double force, double /*near*/) {
-  if (std::isnan(force)) throw std::domain_error("the force is not a number");
   const double x = 0.5 * pair_approach(law, k_equal_pair, equal_strength(law), force);
   if (x < Law::limit) return x;
   throw DomainError(Limit::walls_meet, "a force of " + number_text(force) + " kappa R0^2 leads to displacement/R0 = " +
