@@ -52,9 +52,10 @@ void arm_wall(const Law& law, const WallContact<Law>& c, std::size_t i, Guards& 
   const auto opening = [&] { return c.is_force_controlled() ? 0.0 : law.opening(c.branch()); };
   if (direction > 0 && c.touches()) {
     const auto ahead = c.next(law);
-    const double target = ahead ? c.prescribed_at(law, *ahead) : 0.0;
+    if (!ahead) return;
+    const double target = c.prescribed_at(law, *ahead);
     // Under force, the rate of the displacement is 1 over the slope of the force.
-    if (ahead && c.passes(target)) add(k_boundary, ahead->event, target, ahead->is_singular && c.is_force_controlled());
+    if (c.passes(target)) add(k_boundary, ahead->event, target, ahead->is_singular && c.is_force_controlled());
   } else if (direction > 0 && c.passes_opening(law)) {
     add(k_made, c.made_event(law), opening());
   } else if (direction < 0 && c.touches() && c.passes_opening(law)) {

@@ -210,10 +210,10 @@ class IndependentContacts final : public HybridSystem {
       std::optional<DomainEnd> end;
       if (guard.kind == k_made)
         c.make(law_, true, log);
-      else if (guard.kind == k_lost && !(depends_on_centre(i) && centre_->is_still_pressed(state(xi, y), i)))
+      else if (guard.kind == k_lost)
         c.lose(law_, log, approach_by_centre(i, y));
       else if (guard.kind == k_retreat)
-        c.retreat(law_, approach(i, xi, y), guard.name, log, approach_by_centre(i, y));
+        c.turn(law_, approach(i, xi, y), guard.name, log);
       else if (guard.kind == k_boundary)
         end = c.pass(law_, *c.next(law_), log);
       // The next boundary may lie within the round-off of the ramp, as with the opening of a dent near the resolution:
@@ -292,7 +292,6 @@ class IndependentContacts final : public HybridSystem {
   /// Solves for the centre and for the coordinates of contacts.
   /// @param with_integrated  false: not for coordinates that integrators advance
   void solve_for(double xi, std::span<double> y, bool with_integrated) {
-    if (unknowns_.size() == 1) return;  // the work is the only unknown
     if (centre_) centre_->move(law_, contacts_, xi, y);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (classes_[i].takes_force && (with_integrated || !contacts_[i].is_integrated(law_)))

@@ -22,14 +22,13 @@ struct Scales {
   double force_per_coordinate = 1.0;  ///< force over coordinate, for coordinates in proportion to the force
 };
 
-/// Displacement under a force along the present part of the primary branch, not beyond the end of the law.
+/// Displacement under a force along the present part of the primary branch; the end of the law where it has none.
 template <class Law>
 [[nodiscard]] double reach_under(const Law& law, const WallContact<Law>& contact, double force, double end) {
-  if (std::isfinite(end) && force >= law.force(contact.branch(), end)) return end;
   try {
     return contact.displacement_under(law, force);
   } catch (const std::domain_error&) {
-    return end;  // the force exceeds the greatest one of the law by round-off
+    return end;  // the force exceeds the greatest one of the law
   }
 }
 
@@ -45,7 +44,7 @@ template <class Law>
   const Contact last = Contact::pressed_to(law, is_known ? displacement : k_infinity, force);
   const auto ahead = last.next(law);
   const double end = ahead && ahead->limit ? ahead->position : k_infinity;
-  double reach = is_known ? displacement : std::isfinite(end) ? end : 1.0;
+  double reach = is_known ? displacement : 1.0;
   if (force > 0.0) reach = std::max(reach, reach_under(law, last, force, end));
   reach = std::min(reach, end);
 

@@ -134,9 +134,7 @@ class WallContact {
     return {.by_coordinate = prescribed_per_coordinate()};
   }
   /// Rate of the coordinate.
-  [[nodiscard]] double rate(const Slope& now) const noexcept {
-    return now.by_coordinate > 0.0 ? drive_.rate() / now.by_coordinate : 0.0;
-  }
+  [[nodiscard]] double rate(const Slope& now) const noexcept { return drive_.rate() / now.by_coordinate; }
   /// Residual of the coordinate, in units of the coordinate, as integrators weigh it.
   [[nodiscard]] double residual(const Law& law, double xi, double u, const Slope& now) const {
     return is_integrated(law) ? (now.prescribed - drive_.value(xi)) / now.by_coordinate
@@ -227,11 +225,6 @@ class WallContact {
     return touches_ && goes_in ? pass_reached(law, 0.0, log) : std::nullopt;
   }
 
-  /// Begins to unload at d. A wall that has only touched leaves no dent, and is lost.
-  void retreat(Law& law, double d, std::string_view event, std::vector<Event>& log, double approach_by_centre) {
-    if (d > law.opening(branch_)) return turn(law, d, event, log);
-    lose(law, log, approach_by_centre);
-  }
   /// Begins to unload at d.
   /// @throws DomainError for a law without unloading
   void turn(Law& law, double d, std::string_view event, std::vector<Event>& log) {

@@ -215,7 +215,7 @@ contacts::Magnitudes WallLaw<Law>::magnitudes(double reach) const {
   reach = is_known ? std::min(reach, k_far_from_limit * law_.limit) : 0.5 * law_.limit;
   // A yield point makes the range before it count, too.
   double first = reach;
-  if (Law::first_regime == Regime::elastic && !boundaries_.empty()) first = std::min(reach, boundaries_[0].approach);
+  if (Law::first_regime == Regime::elastic) first = std::min(reach, boundaries_[0].approach);
   // A depth that follows from a force has all its digits, however shallow it is.
   const double least = settings_.reach.displacement > 0.0 ? k_least_typical : 0.0;
   // Beyond the fitted range work grows by orders, and a condition may end a program long before its targets.

@@ -175,11 +175,6 @@ class CentreMode {
     if (const auto ahead = c.next(at.law)) add(k_boundary, 1, ahead->event, ahead->position);
     if (c.is_on_primary_branch() && roles_[i] == Role::bearing) add(k_retreat, -1, "retreat", 0.0);
   }
-  /// True if a contact whose guard has found it lost still has an overlap. In a trial state, the round-off of the
-  /// largest forces may have opened a contact whose overlap is near the resolution.
-  [[nodiscard]] bool is_still_pressed(const State& at, std::size_t i) {
-    return overlap_as_touching(at, i, position(at.y)) > k_touch;
-  }
   /// Value of a guard that arm_guards() has listed.
   /// @param velocity  velocity of the centre; only guards of retreat use it
   [[nodiscard]] double guard_value(const State& at, const Guard& guard, double target, const Vector& velocity) {

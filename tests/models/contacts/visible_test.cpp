@@ -51,6 +51,16 @@ TEST(VisibleContact, ShowsNoForceWhereItIsOpen) {
   EXPECT_EQ(shown.regime, 0.0);
 }
 
+/// A spring whose contact is a point.
+struct SpringOfAPoint : Spring {
+  [[nodiscard]] contacts::BearingContact contact(Branch b, double d) const { return {force(b, d), 0.0}; }
+};
+
+TEST(VisibleContact, ShowsNoPressureOfAPoint) {
+  SpringOfAPoint law;
+  EXPECT_EQ(visible_contact(law, pressed(law, {0.0, 0.2, Control::force}), 0.5, 0.1).pressure, 0.0);
+}
+
 TEST(VisibleContact, ShowsAFollowerByItsLeader) {
   Powerful law;
   const WallContact<Powerful> leader = pressed(law, {0.0, 0.5});
