@@ -6,6 +6,7 @@
 #include <array>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -100,23 +101,25 @@ struct Pair {
   return keys;
 }
 
-/// Values of a column, each of them once.
-[[nodiscard]] std::vector<double> values_once(const Table& table, std::size_t column) {
-  std::vector<double> values;
-  for (std::size_t row = 0; row < table.row_count(); ++row) values.push_back(table.at(row, column));
-  std::ranges::sort(values);
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  return values;
-}
+/// A key that tells the points of a sweep apart.
+struct TellingKey {
+  std::size_t column;
+  std::set<double> values;
+};
 
 /// The key after that of the abscissa that has few values, each of them in several runs on average.
-[[nodiscard]] std::optional<std::size_t> telling_key(const Table& results, std::size_t x) {
+[[nodiscard]] std::optional<TellingKey> telling_key(const Table& results, std::size_t x) {
   constexpr std::size_t k_most_values = 6;
   std::vector<std::size_t> keys = keys_of(results);
   if (const auto own = std::ranges::find(keys, x); own != keys.end()) std::rotate(keys.begin(), own, keys.end());
   for (const std::size_t key : keys) {
-    const std::size_t count = values_once(results, key).size();
-    if (key != x && count > 1 && count <= k_most_values && 2 * count <= results.row_count()) return key;
+    if (key == x) continue;
+    std::set<double> values;
+    for (std::size_t row = 0; row < results.row_count() && values.size() <= k_most_values; ++row) {
+      values.insert(results.at(row, key));
+    }
+    const std::size_t count = values.size();
+    if (count > 1 && count <= k_most_values && 2 * count <= results.row_count()) return {{key, std::move(values)}};
   }
   return std::nullopt;
 }
@@ -127,17 +130,17 @@ struct Pair {
   all.style = ChartSeries::Style::points;
   const auto key = all.legend.empty() ? telling_key(results, x) : std::nullopt;
   if (!key) return {std::move(all)};
-  const Column& column = results.columns()[*key];
+  const Column& column = results.columns()[key->column];
   const std::string name = column.name.substr(column.name.rfind('.') + 1);
   std::vector<ChartSeries> series;
-  for (const double value : values_once(results, *key)) {
+  for (const double value : key->values) {
     const std::string shown = column.holds_words()
                                   ? column.labels[static_cast<std::size_t>(value)]
                                   : number_with_unit(value, is_bare(column.unit) ? std::string() : column.unit);
     ChartSeries& own = series.emplace_back(ChartSeries{
         .legend = verbatim_text(fmt::format("{} = {}", name, shown)), .style = all.style, .colour = series.size()});
     for (std::size_t row = 0; row < results.row_count(); ++row) {
-      if (results.at(row, *key) != value) continue;
+      if (results.at(row, key->column) != value) continue;
       own.x.push_back(all.x[row]);
       own.y.push_back(all.y[row]);
     }

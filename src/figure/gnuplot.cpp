@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <boost/crc.hpp>
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
@@ -61,16 +62,6 @@ constexpr const char* k_log = ".log";
   return bytes;
 }
 
-/// Checksum of a chunk of a PNG file (CRC-32).
-[[nodiscard]] std::uint32_t png_checksum(std::string_view bytes) noexcept {
-  std::uint32_t sum = ~0U;
-  for (const char c : bytes) {
-    sum ^= static_cast<unsigned char>(c);
-    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1U) ^ ((sum & 1U) != 0U ? 0xEDB88320U : 0U);
-  }
-  return ~sum;
-}
-
 /// States the resolution of a PNG file, which gnuplot leaves out: programs would place the figure at 72 or 96 dots per
 /// inch, several times too large.
 void state_resolution(const fs::path& file) {
@@ -78,7 +69,9 @@ void state_resolution(const fs::path& file) {
   std::string png = read_text_file(file, k_largest_text).text;
   const std::string per_metre = png_number(static_cast<std::uint32_t>(std::lround(100.0 * k_png_per_cm)));
   const std::string chunk = "pHYs" + per_metre + per_metre + '\1';
-  png.insert(k_header, png_number(9) + chunk + png_number(png_checksum(chunk)));
+  boost::crc_32_type checksum;
+  checksum.process_bytes(chunk.data(), chunk.size());
+  png.insert(k_header, png_number(9) + chunk + png_number(checksum.checksum()));
   write_text_file(file, png);
 }
 

@@ -29,12 +29,12 @@ void note_error(OutputFile& file) {
 
 /// Transfers bytes piece by piece.
 /// @param transfer  (bytes done) -> bytes transferred, 0 at the end of the file, or -1
-/// @return number of bytes, less than `count` at the end of the file or after an error; then errno is not zero
+/// @return number of bytes, less than `count` at the end of the file, where errno is zero, or after an error
 template <class Transfer>
 std::size_t transfer_all(std::size_t count, Transfer&& transfer) {
   std::size_t done = 0;
-  errno = 0;
   while (done < count) {
+    errno = 0;
     const ssize_t now = transfer(done);
     if (now < 0 && errno == EINTR) continue;
     if (now <= 0) break;
@@ -84,7 +84,7 @@ const H5FD_class_t* driver_class(const Hdf5Library& hdf5) {
         return pread(own(file).descriptor, to + first, count - first, static_cast<off_t>(begin + first));
       });
       std::fill(to + done, to + count, '\0');  // beyond the end
-      return errno == 0 ? 0 : -1;
+      return done == count || errno == 0 ? 0 : -1;
     };
     made.write = [](H5FD_t* base, H5FD_mem_t, hid_t, haddr_t begin, std::size_t count, const void* bytes) -> herr_t {
       OutputFile& file = own(base);

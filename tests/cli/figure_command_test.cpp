@@ -17,19 +17,7 @@ constexpr const char* k_source = MONOGRAIN_SOURCE_DIR;
 class FigureCommand : public CommandTest {
  protected:
   void SetUp() override {
-    write_text(path("small.toml"), R"toml(model = "mdr"
-[particle]
-radius = "1 mm"
-[material]
-youngs_modulus = "1 GPa"
-poisson_ratio = 0.3
-yield_stress = "50 MPa"
-[loading]
-configuration = "simple"
-steps = [{ displacement = "0.1 R0", duration = "1 s" }]
-[output]
-points = 10
-)toml");
+    write_text(path("small.toml"), read_text(fs::path(k_source) / "scenarios/uniaxial.toml"));
     write_text(path("indices.toml"), R"toml(scenario = "small.toml"
 design = "saltelli"
 samples = 8
