@@ -3,7 +3,8 @@
 /// The centre can only move along the mean normals of the classes, because all walls of a class move alike. Classes of
 /// parallel or opposite mean normals push it along one line. Their forces are summed up along that line before they are
 /// resolved into components: the round-off of large forces that nearly cancel would otherwise act across the line,
-/// where a soft contact may be all that bears.
+/// where a soft contact may be all that bears. Directions that differ by no more than k_no_direction count as parallel;
+/// the line is along their mean, whatever their order.
 #pragma once
 
 #include <Eigen/Core>
