@@ -44,17 +44,38 @@ void EquilibriumSearch::solve(Contacts& contacts, std::span<const Ramp> ramps, d
   set_targets(contacts, ramps, xi, targets_);
   // Idle walls may move the centre to several positions, of which Newton's method does not choose the nearest.
   if (is_own_mode && centre_.follow(contacts, targets_, y)) return;
-  std::ranges::copy(y, trial_.begin());
-  if (newton_.solve(contacts, {.targets = targets_}, trial_) && !has_left_branch(contacts, targets_, trial_) &&
-      is_balanced(contacts, targets_, trial_)) {
-    std::ranges::copy(trial_, y.begin());
-  } else if (!centre_.clear_all(contacts, targets_, y)) {
-    try {
-      approach_in_steps(contacts, y);
-    } catch (const std::domain_error&) {
-      if (!descend_to_balance(contacts, y)) throw;
-    }
+  if (balance_from(contacts, y, 1.0) || balance_from(contacts, y, shrinkage(contacts, y))) return;
+  if (centre_.clear_all(contacts, targets_, y)) return;
+  try {
+    approach_in_steps(contacts, y);
+  } catch (const std::domain_error&) {
+    if (!descend_to_balance(contacts, y)) throw;
   }
+}
+
+/// Largest prescribed displacement over that of the state y: where walls withdraw together, overlaps and the path of
+/// the centre are almost in proportion to it.
+double EquilibriumSearch::shrinkage(Contacts& contacts, std::span<const double> y) {
+  set_targets_of(contacts, y, targets_, starts_);
+  double end = 0.0;
+  double start = 0.0;
+  for (std::size_t j = 0; j < targets_.size(); ++j) {
+    if (targets_[j].is_force) continue;
+    end = std::max(end, targets_[j].value);
+    start = std::max(start, starts_[j].value);
+  }
+  return start > 0.0 ? std::min(1.0, end / start) : 1.0;
+}
+
+/// Finds the equilibrium by Newton's method from the state y times a factor.
+/// @return false, with y unchanged, if this leads to no state on the branch
+bool EquilibriumSearch::balance_from(Contacts& contacts, std::span<double> y, double factor) {
+  std::ranges::transform(y, trial_.begin(), [factor](double one) { return factor * one; });
+  if (!newton_.solve(contacts, {.targets = targets_}, trial_) || has_left_branch(contacts, targets_, trial_) ||
+      !is_balanced(contacts, targets_, trial_))
+    return false;
+  std::ranges::copy(trial_, y.begin());
+  return true;
 }
 
 void EquilibriumSearch::clear_centre(Contacts& contacts, std::span<const Ramp> ramps, double xi,

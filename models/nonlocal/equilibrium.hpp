@@ -37,6 +37,8 @@ class EquilibriumSearch {
 
  private:
   void close_gaps(Contacts& contacts, std::span<const char> is_closed, std::span<double> y) const;
+  [[nodiscard]] double shrinkage(Contacts& contacts, std::span<const double> y);
+  [[nodiscard]] bool balance_from(Contacts& contacts, std::span<double> y, double factor);
   void approach_in_steps(Contacts& contacts, std::span<double> y);
   [[noreturn]] void throw_no_state(Contacts& contacts, bool is_on_branch, double done) const;
   [[nodiscard]] bool descend_to_balance(Contacts& contacts, std::span<double> y);
