@@ -74,7 +74,7 @@ Model model() noexcept {
       {.name = "hardening",
        .summary = "rigid-plastic particle that hardens by a power law, by the semi-mechanistic law",
        .references = k_references,
-       .source = "chapter 3; misprints corrected",
+       .source = "chapter 3, with A. Agarwal and M. Gonzalez; misprints corrected",
        .configurations = plastic::k_source_configurations,
        .regimes = k_regimes,
        .events = k_events,

@@ -136,7 +136,7 @@ Model model() noexcept {
       {.name = "semimech",
        .summary = "elastic-ideally plastic particle by the semi-mechanistic law, from first touch to no pores left",
        .references = k_references,
-       .source = "chapter 2; misprints corrected",
+       .source = "chapter 2, with A. Agarwal and M. Gonzalez; misprints corrected",
        .material = k_material,
        .options = k_options,
        .configurations = plastic::k_source_configurations,
