@@ -193,8 +193,11 @@ class PieceReader {
   const double left = b.left_limit(before);
   const double right = b.right_limit(after);
   const double beyond = b.beyond(knot.along);
-  return {Sample{x, knot.left, left - knot.left, !std::isnan(knot.left) || !std::isnan(left), beyond},
-          Sample{x, knot.right, right - knot.right, !std::isnan(knot.right) || !std::isnan(right), beyond}};
+  const auto sample = [&](double own, double other) {
+    const double difference = jump ? recorded_difference(own, other) : other - own;
+    return Sample{x, own, difference, !std::isnan(own) || !std::isnan(other), beyond};
+  };
+  return {sample(knot.left, left), sample(knot.right, right)};
 }
 
 void sample_piece(const Piece& a, const Piece& b, double range, std::vector<Sample>& samples) {

@@ -162,6 +162,14 @@ TEST(CompareCurves, IsInfinitelyApartAtARowThatOnlyOneCurveDefinesWhereTheOtherR
   EXPECT_TRUE(std::isinf(difference.linf));
 }
 
+TEST(CompareCurves, IsInfinitelyApartAtAJumpWhereOnlyOneCurveIsDefined) {
+  const Values x{0, 1, 1, 2};
+  const Values of_other{0, 1 + 1e-9, 1 + 1e-9, 2};
+  EXPECT_TRUE(std::isinf(compare_curves(x, Values{1, 1, 3, 3}, of_other, Values{1, k_nan, 3, 3}).linf));
+  EXPECT_TRUE(std::isinf(compare_curves(x, Values{1, 1, 3, 3}, of_other, Values{1, 1, k_nan, 3}).linf));
+  EXPECT_EQ(compare_curves(x, Values{1, 1, k_nan, 3}, of_other, Values{1, 1, k_nan, 3}).linf, 0.0);
+}
+
 TEST(CompareCurves, CountsAsCoveredOnlyWhereAtLeastOneCurveIsDefined) {
   const Values x{0, 1, 2, 3};
   EXPECT_EQ(compare_curves(x, Values{1, 1, k_nan, k_nan}, x, Values{1, 1, k_nan, k_nan}).coverage, 1.0);

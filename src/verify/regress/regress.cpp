@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -75,6 +76,30 @@ void add_gaps(const Comparison& run_to_stored, const Comparison& stored_to_run, 
   }
 }
 
+/// Keeps the largest difference of a run from its stored curve, and its column.
+void take(double difference, const std::string& column, RegressionResult& result) {
+  if (difference <= result.difference || std::isnan(result.difference)) return;  // nan is taken, and stays
+  result.difference = difference;
+  result.column = column;
+}
+
+/// Compares the values at events, row by row, over the largest value of each column in the history.
+void compare_at_events(const Table& expected, const Table& now, const Table& history, RegressionResult& result) {
+  for (const Column& column : expected.columns()) {
+    const auto of_now = now.find(column.name);
+    if (column.holds_words() || column.name == "time" || !history.find(column.name) || !of_now) continue;
+    double largest = 0.0;
+    for (const double value : history.column(column.name)) largest = std::fmax(largest, std::abs(value));
+    if (largest == 0.0) continue;
+    const std::vector<double> stored = expected.column(column.name);
+    for (std::size_t row = 0; row < stored.size(); ++row) {
+      const double value = now.at(row, *of_now);
+      if (std::isnan(value) && std::isnan(stored[row])) continue;
+      take(std::abs(value - stored[row]) / largest, fmt::format("{} at an event", column.name), result);
+    }
+  }
+}
+
 void compare_with_stored(const Run& run, const fs::path& curves, RegressionResult& result) {
   const fs::path curve = curves / (run.scenario.name + ".csv");
   if (!fs::exists(curve)) {
@@ -90,16 +115,16 @@ void compare_with_stored(const Run& run, const fs::path& curves, RegressionResul
   if (run.record.status != RunStatus::complete) faults.add(run.record.message);
   const Comparison of_events = compare_events(events, run.record.events);
   for (const Gap& gap : of_events.gaps) faults.add(fmt::format("{} {}", gap.column, gap.problem));
-  if (of_events.gaps.empty()) result.event_time = of_events.curves.empty() ? 0.0 : of_events.curves.front().linf;
   const Table expected = with_smooth_columns(history);
   const Table now = with_smooth_columns(run.record.history);
   const Comparison of_run = compare_tables(expected, now, "time", "");
   // The run may have something that the stored curve lacks, too.
   add_gaps(of_run, compare_tables(now, expected, "time", ""), faults);
-  for (const CurveDifference& difference : of_run.curves) {
-    if (difference.linf <= result.difference) continue;
-    result.difference = difference.linf;
-    result.column = difference.y;
+  result.difference = 0.0;
+  for (const CurveDifference& difference : of_run.curves) take(difference.linf, difference.y, result);
+  if (of_events.gaps.empty()) {
+    result.event_time = of_events.curves.empty() ? 0.0 : of_events.curves.front().linf;
+    compare_at_events(with_smooth_columns(events), with_smooth_columns(run.record.events), expected, result);
   }
   result.fault = faults.text();
 }

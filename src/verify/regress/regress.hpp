@@ -26,7 +26,8 @@ struct RegressionResult {
 
 /// Runs every scenario of a folder with `direct` (if its model has that form), `cvode-adams`, `cvode-bdf` and `ida`,
 /// and compares each run with NAME.csv and NAME.events.csv of another folder: columns, words and events must be the
-/// same, and each curve must cover the other. A stored curve without a scenario is a result with a fault.
+/// same, each curve must cover the other, and the values at events count like those of the curves. A stored curve
+/// without a scenario is a result with a fault.
 /// @throws std::runtime_error if there is no scenario
 [[nodiscard]] std::vector<RegressionResult> regress(const std::filesystem::path& scenarios,
                                                     const std::filesystem::path& curves);

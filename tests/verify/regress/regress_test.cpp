@@ -1,11 +1,13 @@
 #include "verify/regress/regress.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <set>
 #include <string>
 
+#include "history/table.hpp"
 #include "scenario/faults.hpp"
 #include "support/scenario_texts.hpp"
 #include "support/temporary_folder.hpp"
@@ -48,6 +50,28 @@ TEST(StoredCurves, AreAllReplacedOrNone) {
   write_text(scenarios / "b.toml", "no scenario");
   EXPECT_THROW(static_cast<void>(accept_curves(scenarios, folder.path() / "curves")), ScenarioError);
   EXPECT_EQ(read_text(folder.path() / "curves" / "a.csv"), before);
+}
+
+TEST(StoredCurves, AreNotMetWhereAValueDiffersAtAnEvent) {
+  const TemporaryFolder folder;
+  const auto scenarios = folder.path() / "scenarios";
+  std::filesystem::create_directory(scenarios);
+  write_text(scenarios / "a.toml", k_hertz_text);
+  accept_curves(scenarios, folder.path());
+  for (const RegressionResult& result : regress(scenarios, folder.path())) EXPECT_TRUE(result.passes()) << result.fault;
+
+  const auto file = folder.path() / "a.events.csv";
+  const Table events = read_csv(file);
+  std::string text = read_text(file);
+  const std::size_t last_line = text.rfind('\n', text.size() - 2) + 1;
+  const std::string stored = fmt::format("{}", events.at(events.row_count() - 1, *events.find("axial.force")));
+  const std::size_t force = text.find("," + stored + ",", last_line);
+  ASSERT_NE(force, std::string::npos) << text.substr(last_line);
+  write_text(file, text.replace(force + 1, stored.size(), fmt::format("{}", 1.001 * std::stod(stored))));
+  for (const RegressionResult& result : regress(scenarios, folder.path())) {
+    EXPECT_FALSE(result.passes());
+    EXPECT_EQ(result.column, "axial.force at an event");
+  }
 }
 
 TEST(StoredCurves, NeedAFolderOfScenarios) {
