@@ -47,14 +47,26 @@ examples/example_calibrate "$source/scenarios/calibrate/uniaxial.toml" | tee fit
 grep -q '^material.yield_stress .* Pa, 95 % in \[' fit.txt || fail "calibrate"
 [[ -s runs/fit-from-cpp/fitted.toml ]] || fail "calibrate left no fitted.toml"
 
+mkdir "$work/components"
+cat > "$work/components/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.25)
+project(components LANGUAGES CXX)
+find_package(monograin 0.1 REQUIRED COMPONENTS monograin studies)
+find_package(monograin 0.1 QUIET COMPONENTS figures)
+if(monograin_FOUND OR NOT monograin_NOT_FOUND_MESSAGE MATCHES "figures")
+  message(FATAL_ERROR "a component that is missing: ${monograin_NOT_FOUND_MESSAGE}")
+endif()
+END
+cmake -S "$work/components" -B "$work/of-components" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" > "$work/log" 2>&1 ||
+  { cat "$work/log"; fail "find_package with components"; }
+
 # --- pkg-config
 if command -v pkg-config > /dev/null; then
   export PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name monograin.pc)")
   # shellcheck disable=SC2046
   g++ -std=c++20 "$source/examples/cpp/run_scenario.cpp" -o by_pkg_config $(pkg-config --cflags --libs monograin)
   # shellcheck disable=SC2046
-  g++ -std=c++20 "$source/examples/cpp/calibrate.cpp" -o fit_by_pkg_config $(pkg-config --cflags --libs monograin) \
-    -lmonograin_studies
+  g++ -std=c++20 "$source/examples/cpp/calibrate.cpp" -o fit_by_pkg_config $(pkg-config --cflags --libs monograin_studies)
   LD_LIBRARY_PATH=$(dirname "$(find "$prefix" -name 'libmonograin.so')")
   export LD_LIBRARY_PATH
   ./by_pkg_config | cmp - run.txt || fail "pkg-config"
@@ -70,11 +82,23 @@ project(outer LANGUAGES CXX)
 set(CMAKE_DISABLE_FIND_PACKAGE_GTest ON)
 set(CMAKE_DISABLE_FIND_PACKAGE_CLI11 ON)
 set(CMAKE_DISABLE_FIND_PACKAGE_ALGLIB ON)
+file(TOUCH "\${CMAKE_BINARY_DIR}/empty.cpp")
 add_subdirectory("$source" monograin)
 add_subdirectory("$source/examples/cpp" examples)
+add_library(of_outer "\${CMAKE_BINARY_DIR}/empty.cpp")
+get_target_property(type of_outer TYPE)
+if(NOT type STREQUAL "STATIC_LIBRARY" OR DEFINED CACHE{BUILD_SHARED_LIBS})
+  message(FATAL_ERROR "a library of the outer project is a \${type} now")
+endif()
 if(TARGET monograin_cli OR TARGET monograin_api_tests)
   message(FATAL_ERROR "tests and tools are built")
 endif()
 END
 cmake -S "$work/outer" -B "$work/outer-build" -G Ninja > "$work/log" || { cat "$work/log"; fail "add_subdirectory"; }
+
+# --- the library alone, in folders of its own
+cmake -S "$source" -B "$work/library-alone" -G Ninja -DMONOGRAIN_BUILD_PROGRAM=OFF -DMONOGRAIN_BUILD_TESTS=OFF \
+  -DCMAKE_INSTALL_INCLUDEDIR=/opt/include -DCMAKE_INSTALL_LIBDIR=/opt/lib > "$work/log" ||
+  { cat "$work/log"; fail "the library without the program"; }
+grep -qx 'Cflags: -I/opt/include' "$work/library-alone/monograin.pc" || fail "absolute folders in monograin.pc"
 echo "library_test: passed"
