@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "api/checked.hpp"
+#include "api/untrapped.hpp"
 #include "history/compare.hpp"
 #include "history/table.hpp"
 #include "monograin/comparison.hpp"
@@ -32,6 +33,7 @@ void require_labels_of_values(const History::Column& column) {
 /// Makes a table of columns.
 /// @throws std::invalid_argument if columns differ in length or have the same name and unit, or labels lack a value
 Table table_of(const std::vector<History::Column>& columns) {
+  const Untrapped untrapped;
   std::vector<Column> headings;
   for (const History::Column& column : columns) {
     if (column.values.size() != columns.front().values.size()) {
@@ -117,6 +119,7 @@ std::vector<std::string_view> History::words(std::string_view name) const& {
 const Table& History::table() const noexcept { return *content_->table; }
 
 Comparison compare(const History& reference, const History& other, const std::string& x, const std::string& y) {
+  const Untrapped untrapped;
   return compare_tables(reference.table(), other.table(), x, y);
 }
 

@@ -33,9 +33,13 @@ RunResult::RunResult(std::shared_ptr<const Run> run)
       events(part_of(run, run->record.events)),
       run_(std::move(run)) {}
 
-std::string RunResult::json() const { return run_json(*run_); }
+std::string RunResult::json() const {
+  const Untrapped untrapped;
+  return run_json(*run_);
+}
 
 void RunResult::save(const std::filesystem::path& folder) const {
+  const Untrapped untrapped;
   StagedFolder staged(folder);
   Run run = *run_;  // a copy, because write_run() notes the time of writing in the run
   write_run(run, staged);
@@ -53,11 +57,13 @@ void RunResult::write_vtk(const std::filesystem::path& folder) const {
 }
 
 std::string RunResult::lammps_input() const {
+  const Untrapped untrapped;
   const LammpsLaw law = lammps_law_of(run_->scenario);
   return monograin::lammps_input(run_->scenario, motion_of(run_->scenario, run_->record.history), law);
 }
 
 History RunResult::force_table(const std::string& contact_class) const {
+  const Untrapped untrapped;
   const auto chosen = contact_class.empty() ? std::nullopt : std::optional(contact_class);
   return history_of(monograin::force_table(motion_of(run_->scenario, run_->record.history), chosen));
 }

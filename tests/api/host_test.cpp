@@ -6,6 +6,8 @@
 
 #include <cfenv>
 #include <filesystem>
+#include <limits>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -44,6 +46,13 @@ TEST(Host, MayTrapFloatingPointExceptions) {
   for (const char* const name : {"cel.toml", "die.toml", "nonlocal.toml", "late-wall.toml"}) {
     EXPECT_EQ(run(ready_scenario(name)).status, RunStatus::complete) << name;
   }
+  const RunResult of_packing = run(ready_scenario("packing.toml"));
+  EXPECT_EQ(compare(of_packing.history, of_packing.history).gaps.size(), 0U);
+  const RunResult of_nonlocal = run(ready_scenario("nonlocal.toml"));
+  EXPECT_GT(of_nonlocal.force_table().row_count(), 0U);
+  of_nonlocal.save(folder.path() / "nonlocal");
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(History({{"word", "", {"a"}, {none, 0.0}}}).words("word"), (std::vector<std::string>{"", "a"}));
   const PreparedScenario prepared(ready_scenario("hertz.toml"), {"material.poisson_ratio"});
   const MapResult mapped =
       prepared.map(std::vector{0.2, 0.3}, std::vector<std::string>{"1 / (end(work) - end(work))"}, {.threads = 2});
