@@ -1,4 +1,5 @@
 #include "support/reference_case.hpp"
+#include "support/deviation.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -188,7 +189,7 @@ CurveErrors errors_against(const ReferenceCase& reference, const RunRecord& run,
       // error of theirs, nor is round-off where the force vanishes.
       const bool is_root = pair.reference.starts_with("a_") || pair.reference.starts_with("pmean_");
       if (is_root && (key.first != 0 || force_of(pair.reference, row) < 1e-20)) continue;
-      worst = std::max(worst, std::abs(actual[best->second] * pair.scale - expected[row]));
+      worst = std::max(worst, deviation(actual[best->second] * pair.scale, expected[row]));
     }
     const double relative = peak > 0.0 ? worst / peak : worst;
     errors.by_quantity[pair.reference] = relative;

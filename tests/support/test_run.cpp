@@ -9,6 +9,7 @@
 #include <string>
 
 #include "engine/integrator.hpp"
+#include "support/deviation.hpp"
 
 namespace monograin {
 namespace {
@@ -197,10 +198,7 @@ double largest(const std::vector<double>& values) {
 double difference(const std::vector<double>& actual, const std::vector<double>& expected) {
   if (actual.size() != expected.size()) return std::numeric_limits<double>::infinity();
   double worst = 0.0;
-  for (std::size_t i = 0; i < actual.size(); ++i) {
-    // A NaN on either side is a difference, and std::max would drop it.
-    if (!(std::abs(actual[i] - expected[i]) <= worst)) worst = std::abs(actual[i] - expected[i]);
-  }
+  for (std::size_t i = 0; i < actual.size(); ++i) worst = std::max(worst, deviation(actual[i], expected[i]));
   const double scale = largest(expected);
   return scale > 0.0 ? worst / scale : worst;
 }
@@ -208,7 +206,7 @@ double difference(const std::vector<double>& actual, const std::vector<double>& 
 double difference(const TestRun& actual, const TestRun& expected) {
   double worst = 0.0;
   const auto take = [&worst](double value) {
-    if (!(value <= worst)) worst = value;
+    worst = std::isnan(value) ? std::numeric_limits<double>::infinity() : std::max(worst, value);
   };
   for (const char* name : {"apparent_radius", "volume", "work", "stored_energy", "dissipation"}) {
     if (!expected.record.history.find(name)) continue;

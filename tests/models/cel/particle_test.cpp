@@ -17,6 +17,7 @@
 #include "cel/newton.hpp"
 #include "models/accuracy.hpp"
 #include "models/cel/cases.hpp"
+#include "support/deviation.hpp"
 
 namespace monograin::cel::particle_test {
 namespace {
@@ -130,7 +131,7 @@ struct RandomCase {
     double largest = 0.0;
     for (std::size_t j = 0; j < y.size(); ++j) {
       const double scale = j < 2 * classes.size() ? std::abs(y[j]) : 0.2;
-      largest = std::max(largest, std::abs(dy[j]) / scale);
+      largest = std::max(largest, deviation(dy[j], 0.0) / scale);
     }
     return largest;
   }

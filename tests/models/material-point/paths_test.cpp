@@ -12,6 +12,7 @@
 #include "history/run.hpp"
 #include "material-point/yield_surface.hpp"
 #include "models/material-point/cases.hpp"
+#include "support/deviation.hpp"
 #include "support/refusal.hpp"
 
 namespace monograin::material_point::paths_test {
@@ -479,7 +480,7 @@ double end_distance(const TestRun& a, const TestRun& b) {
   double worst = 0.0;
   for (const char* column : {"p", "s", "phi", "plastic_strain_deviatoric", "strain_lateral"}) {
     const double scale = std::max(largest(b.column(column)), 1e-6);
-    worst = std::max(worst, std::abs(a.last(column) - b.last(column)) / scale);
+    worst = std::max(worst, deviation(a.last(column), b.last(column)) / scale);
   }
   return worst;
 }

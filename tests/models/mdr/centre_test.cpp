@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "models/accuracy.hpp"
+#include "support/deviation.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::centre_test {
@@ -217,7 +218,7 @@ double misplacement(const TestRun& result) {
       const Eigen::Vector3d centre(x[0][row], x[1][row], x[2][row]);
       const double growth = grows ? result.column("apparent_radius")[row] - 1.0 : 0.0;
       const double expected = displacement[row] + c.normals.front().dot(centre) + growth;
-      worst = std::max(worst, std::abs(overlap[row] - expected));
+      worst = std::max(worst, deviation(overlap[row], expected));
     }
   }
   return worst;

@@ -11,6 +11,7 @@
 #include "history/profile.hpp"
 #include "mdr/system.hpp"
 #include "models/accuracy.hpp"
+#include "support/deviation.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::invariants_test {
@@ -219,7 +220,7 @@ double largest_drift(const CheckedScenario& scenario, std::string_view integrato
       xi = advance.xi;
       hit_guard = advance.hit_guard;
       integrator_used->dense_output(xi, y);
-      worst = std::max(worst, std::abs(balance_defect(system, xi, y)));
+      worst = std::max(worst, deviation(balance_defect(system, xi, y), 0.0));
     }
     if (hit_guard) {
       const std::vector<std::size_t> fired(integrator_used->fired().begin(), integrator_used->fired().end());

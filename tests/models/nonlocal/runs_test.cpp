@@ -14,6 +14,7 @@
 
 #include "history/table.hpp"
 #include "models/accuracy.hpp"
+#include "support/deviation.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::nonlocal_runs_test {
@@ -134,7 +135,7 @@ double error_of(const TestRun& run, const Table& table, const std::string& radiu
     // A column that is zero by symmetry, up to round-off, is measured in radii.
     const double largest_value = largest(expected) < 1e-12 ? 1.0 : largest(expected);
     for (std::size_t k = 0; k < expected.size(); ++k) {
-      worst = std::max(worst, std::abs(actual[k + shift] - factor * expected[k]) / (std::abs(factor) * largest_value));
+      worst = std::max(worst, deviation(actual[k + shift], factor * expected[k]) / (std::abs(factor) * largest_value));
     }
   }
   return worst;

@@ -11,6 +11,7 @@
 
 #include "models/accuracy.hpp"
 #include "models/packing/cases.hpp"
+#include "support/deviation.hpp"
 
 namespace monograin::packing::law_test {
 namespace {
@@ -19,7 +20,7 @@ double largest_error(const std::vector<double>& expected, const std::vector<doub
   double error = 0.0;
   double scale = 0.0;
   for (std::size_t k = 0; k < expected.size(); ++k) {
-    error = std::max(error, std::abs(actual[k] / unit - expected[k]));
+    error = std::max(error, deviation(actual[k] / unit, expected[k]));
     scale = std::max(scale, std::abs(expected[k]));
   }
   return error / scale;

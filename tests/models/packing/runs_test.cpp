@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "models/packing/cases.hpp"
+#include "support/deviation.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::packing::runs_test {
@@ -64,7 +65,9 @@ double error_of(const TestRun& run, const Parameters& p) {
     double scale = 0.0;
     for (std::size_t k = 0; k < phi.size(); ++k) {
       const auto value = static_cast<double>(expected(Precise(phi[k])));
-      error = std::max(error, std::abs(values[k] - value));
+      // By the round-off of Phi the printed power of Phi - Phi_c may be undefined where the packing jams.
+      if (k == 0 && std::isnan(value)) continue;
+      error = std::max(error, deviation(values[k], value));
       scale = std::max(scale, std::abs(value));
     }
     worst = std::max(worst, error / scale);
@@ -119,7 +122,7 @@ class PackingRun : public ::testing::TestWithParam<Curve> {
       // With the consistent coupling, two packings next to jamming have equal strain and equal stress.
       const bool is_ambiguous = GetParam().parameters.coupling == Coupling::consistent && is_inverse_;
       for (std::size_t k = is_ambiguous ? 1 : 0; k < rows_; ++k) {
-        worst = std::max(worst, std::abs(values[k + skipped] / unit - reference[k]) / scale);
+        worst = std::max(worst, deviation(values[k + skipped] / unit, reference[k]) / scale);
       }
     };
     compare("packing_fraction", "packing_fraction", 1.0);

@@ -15,6 +15,7 @@
 #include "models/plastic/scenarios.hpp"
 #include "plastic/model_of.hpp"
 #include "scenario/model_input.hpp"
+#include "support/deviation.hpp"
 #include "support/test_run.hpp"
 
 namespace monograin::plastic::reference_runs_test {
@@ -95,7 +96,7 @@ class ReferenceCurve : public ::testing::TestWithParam<std::string> {
         // Next to the filled cell a round-off of x is a relative error of x/(x_g - x) times that in the pressure.
         const double round_off = singular_share * k_epsilon * x[k] / (singular_ - x[k]);
         const double over = scale == Scale::own ? std::abs(reference[k]) : largest(reference);
-        worst = std::max(worst, std::abs(actual[k + 1] - reference[k]) / over - round_off);
+        worst = std::max(worst, deviation(actual[k + 1], reference[k]) / over - round_off);
       }
       return worst;
     };
