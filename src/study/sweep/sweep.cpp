@@ -400,21 +400,23 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   prepare(options.folder, results_file(options.folder, format), options.figure_format);
   SweepOutcome outcome;
   {
-    const FolderLock lock(options.folder);
-    if (const auto found = found_results(sweep, options.folder, options.format)) {
-      complete(sweep, options.folder);
-      return {.runs_before = sweep.runs.size(), .results = *found};
-    }
-  }
-  {
-    SweepJournal journal(journal_file(options), sweep.digest);
+    std::optional<SweepJournal> journal;
     std::vector<std::size_t> runs;
-    Rows rows(sweep, options.folder);
-    const std::size_t before = rows.count();
-    for (std::size_t run = options.shard.index - 1; run < sweep.runs.size(); run += options.shard.count) {
-      if (!rows.has(run)) runs.push_back(run);
+    std::size_t before = 0;
+    {
+      const FolderLock lock(options.folder);
+      if (const auto found = found_results(sweep, options.folder, options.format)) {
+        complete(sweep, options.folder);
+        return {.runs_before = sweep.runs.size(), .results = *found};
+      }
+      const Rows rows(sweep, options.folder);  // a journal of another sweep is refused before this one has its own
+      journal.emplace(journal_file(options), sweep.digest);
+      before = rows.count();
+      for (std::size_t run = options.shard.index - 1; run < sweep.runs.size(); run += options.shard.count) {
+        if (!rows.has(run)) runs.push_back(run);
+      }
     }
-    outcome = run_all(sweep, options, runs, journal);
+    outcome = run_all(sweep, options, runs, *journal);
     outcome.runs_before = before;
   }
   const FolderLock lock(options.folder);

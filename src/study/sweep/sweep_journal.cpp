@@ -52,6 +52,17 @@ std::string_view take_cell(std::string_view& text) {
   return cell;
 }
 
+/// Number of rows in the complete lines that follow in a journal.
+[[nodiscard]] std::size_t count_rows(std::istream& journal) {
+  std::size_t count = 0;
+  for (std::string line; std::getline(journal, line) && !journal.eof();) {
+    const std::optional<std::string_view> payload = payload_of(line);
+    if (!payload) break;
+    if (payload->starts_with(k_row) && payload->substr(k_row.size()).starts_with(',')) ++count;
+  }
+  return count;
+}
+
 [[nodiscard]] std::size_t to_count(std::string_view cell) {
   std::size_t count = 0;
   std::from_chars(cell.data(), cell.data() + cell.size(), count);
@@ -95,9 +106,11 @@ SweepRecord::SweepRecord(const fs::path& file, const std::string& digest)
     std::string_view cells = *payload;
     const std::string_view kind = take_cell(cells);
     if (is_first && (kind != k_journal || cells != digest)) {
-      fail(file,
-           "is the journal of another sweep, or of this one before its sweep file, its scenario, a table or the "
-           "program changed; remove it to begin anew, or choose another folder");
+      const std::size_t count = count_rows(stream_);
+      fail(file, fmt::format("is the journal of another sweep, or of this one before its sweep file, its scenario, a "
+                             "table or the program changed, and holds {} finished run{}; remove it to begin anew, or "
+                             "choose another folder",
+                             count, count == 1 ? "" : "s"));
     }
     if (kind == k_columns) layouts_.push_back({std::string(cells)});
     if (kind == k_row) {
