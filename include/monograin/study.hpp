@@ -58,7 +58,8 @@ struct SweepResult {
   /// Content of results.csv or results.h5, once no run is missing: a row for each run with its keys, `status` and
   /// `reason`, and the final (`end.axial.force`) and largest (`max.axial.force`) value of every column, in SI units.
   History results;
-  /// Values that may not be meant as they are read, and how many runs of this call warn and of what, a sentence each.
+  /// A sentence each: values that may not be meant as they are read; how many runs of this call warn, and of what; how
+  /// many of all finished runs were refused, stopped or failed.
   std::vector<std::string> warnings;
   std::string no_figure;  ///< why the folder has no figure of the bands; empty: it has one, or none was requested
 };

@@ -59,7 +59,8 @@ def sweep(
     """Runs a sweep on several threads, as ``monograin sweep`` does.
 
     An interrupted sweep goes on from the runs that are in its folder. Results of another sweep there are replaced. Values
-    that may not be meant as they are read, runs that warn, and a figure that cannot be drawn, give a ``RuntimeWarning``.
+    that may not be meant as they are read, runs that warn, stop or fail or are refused, and a figure that cannot be drawn,
+    give a ``RuntimeWarning``.
 
     Args:
         source: a sweep file (TOML), or a dict of the same structure, whose file names are relative to the current

@@ -82,6 +82,7 @@ PlanResult run_plan(const Sweep& plan, const SweepOptions& options) {
              .format = results_format(options.format)});
   result.missing = outcome.runs_missing;
   result.warnings.insert(result.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+  if (outcome.runs_ended_early > 0) result.warnings.push_back(early_ends_text(plan, outcome));
   return {.result = std::move(result), .table = std::move(outcome.results)};
 }
 

@@ -66,11 +66,8 @@ void report(const Sweep& sweep, const SweepOutcome& outcome, double seconds) {
   if (outcome.runs_now > 0) {
     text += fmt::format(" in {:.3g} s ({:.4g} runs/s)", seconds, static_cast<double>(outcome.runs_now) / seconds);
   }
-  if (outcome.runs_ended_early > 0) {
-    text +=
-        fmt::format(", {} of them refused, stopped or failed (columns status and reason)", outcome.runs_ended_early);
-  }
   if (outcome.runs_before > 0) text += fmt::format(", {} were there already", outcome.runs_before);
+  if (outcome.runs_ended_early > 0) text += "; " + early_ends_text(sweep, outcome);
   text += outcome.runs_missing > 0
               ? fmt::format("; {} of {} are left to other shards", outcome.runs_missing, sweep.runs.size())
               : fmt::format(" -> {}", outcome.results.string());
@@ -89,10 +86,7 @@ SweepOutcome run_all(const Sweep& plan, SweepOptions options, bool is_quiet = fa
     return run_sweep(plan, options);
   }();
   say_warnings(plan.name, outcome.warnings);
-  if (is_quiet && outcome.runs_ended_early > 0) {
-    say("warning: {}: {} of {} runs refused, stopped or failed (columns status and reason)\n", plan.name,
-        outcome.runs_ended_early, outcome.runs_now);
-  }
+  if (is_quiet && outcome.runs_ended_early > 0) say("warning: {}: {}\n", plan.name, early_ends_text(plan, outcome));
   if (is_quiet) return outcome;
   report(plan, outcome, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return outcome;

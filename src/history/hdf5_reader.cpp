@@ -116,13 +116,14 @@ void add_columns(const Hdf5Calls& calls, hid_t group, bool is_top, std::vector<C
 
 }  // namespace
 
-Table read_hdf5(const fs::path& file) {
+Table read_hdf5(const fs::path& file, std::string_view only) {
   const Hdf5Calls calls(file, "cannot be read as a table in HDF5");
   const Hdf5Object access = calls.object(calls.library.H5Pcreate(*calls.library.file_access));
   calls.check(calls.library.H5Pset_file_locking(access, false, true));  // some network file systems refuse a lock
   const Hdf5Object whole = calls.object(calls.library.H5Fopen(file.c_str(), H5F_ACC_RDONLY, access));
   std::vector<ColumnReader> columns;
   add_columns(calls, whole, true, columns);
+  if (!only.empty()) std::erase_if(columns, [&](const ColumnReader& column) { return column.column().name != only; });
   if (columns.empty()) calls.fail("it has no dataset");
   const std::size_t rows = columns.front().rows();
   if (rows > k_most_stored_cells / columns.size()) calls.fail("it is too large; expected at most 1000 million cells");

@@ -52,8 +52,9 @@ struct Hdf5Frame {
 ///         with a unit
 void write_hdf5(const std::filesystem::path& file, const Hdf5Frame& frame, const TableLines& lines);
 
-/// Reads a whole table from a file of write_hdf5(), with lines `# key: value` at its beginning as the header.
+/// Reads a table from a file of write_hdf5(), with lines `# key: value` at its beginning as the header.
+/// @param only  name of the one column to read; empty: the whole table
 /// @throws std::runtime_error naming the file and why it cannot be read: among others, more than 1000 million cells
-[[nodiscard]] Table read_hdf5(const std::filesystem::path& file);
+[[nodiscard]] Table read_hdf5(const std::filesystem::path& file, std::string_view only = {});
 
 }  // namespace monograin

@@ -59,6 +59,10 @@ TEST_F(SweepCommand, LeavesOneFileOfResults) {
             "warning: many: 120 of 800 runs refused, stopped or failed (columns status and reason)\n");
   EXPECT_EQ(text("one/results.csv"), text("runs/many/results.csv"));
   EXPECT_FALSE(fs::exists(path("one/sweep.journal")));
+  ASSERT_EQ(monograin("sweep many.toml -o one").code, 0) << text("stderr.txt");
+  EXPECT_EQ(text("stderr.txt"),
+            "many: 0 runs, 800 were there already; 120 of 800 runs refused, stopped or failed (columns status and "
+            "reason) -> one/results.csv\n");
 }
 
 TEST_F(SweepCommand, LeavesARecordThatRepeatsItWithoutItsFiles) {

@@ -59,6 +59,14 @@ def test_data_of_a_machine_can_be_calibrated(tmp_path):
     assert mg.calibrate(plan).values == expected.values
 
 
+def test_a_sweep_warns_of_runs_that_do_not_complete(tmp_path):
+    plan = {"scenario": mg.scenario("hertz"), "vary": {"material.poisson_ratio": {"values": [0.3, 0.6]}}}
+    for _ in range(2):
+        with pytest.warns(RuntimeWarning, match="1 of 2 runs refused, stopped or failed") as caught:
+            mg.sweep(plan, tmp_path / "out")
+        assert [warning.filename for warning in caught] == [__file__]
+
+
 def test_a_sweep_tells_how_many_points_the_constraints_exclude(tmp_path):
     plan = {
         "scenario": (mg.scenario_folder() / "die.toml").as_posix(),

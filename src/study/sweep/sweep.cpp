@@ -279,9 +279,9 @@ class Rows {
   Rows(const Sweep& sweep, const fs::path& folder) : sweep_(sweep), places_(sweep.runs.size()) {
     for (const fs::path& file : journals_in(folder)) {
       records_.emplace_back(file, sweep.digest);
-      for (const auto& [run, begin] : records_.back().rows()) {
+      for (const auto& [run, is_complete, begin] : records_.back().rows()) {
         Place& place = places_.at(run - 1);
-        if (!place.is_there) place = {true, static_cast<std::uint32_t>(records_.size() - 1), begin};
+        if (!place.is_there) place = {true, is_complete, static_cast<std::uint32_t>(records_.size() - 1), begin};
       }
     }
   }
@@ -289,6 +289,10 @@ class Rows {
   [[nodiscard]] bool has(std::size_t run) const { return places_[run].is_there; }
   [[nodiscard]] std::size_t count() const {
     return static_cast<std::size_t>(std::ranges::count(places_, true, &Place::is_there));
+  }
+  /// Number of runs that were refused, stopped or failed.
+  [[nodiscard]] std::size_t count_ended_early() const {
+    return count() - static_cast<std::size_t>(std::ranges::count(places_, true, &Place::is_complete));
   }
 
   /// Passes the line of headings and then that of each run to a sink. All runs have to be finished.
@@ -320,6 +324,7 @@ class Rows {
  private:
   struct Place {
     bool is_there = false;
+    bool is_complete = false;
     std::uint32_t record = 0;
     std::uint64_t begin = 0;  ///< of the row in its journal
   };
@@ -370,7 +375,6 @@ class Rows {
     const std::scoped_lock lock(mutex);
     journal.append(outcome.row, outcome.columns);
     ++all.runs_now;
-    if (outcome.row.status != to_string(RunStatus::complete)) ++all.runs_ended_early;
     if (!outcome.warnings.empty()) {
       ++with_warnings;
       if (outcome.row.run < first) {
@@ -394,6 +398,12 @@ fs::path folder_of(const Sweep& sweep, const fs::path& chosen) {
   return chosen.empty() ? fs::path("runs") / sweep.name : chosen;
 }
 
+std::string early_ends_text(const Sweep& sweep, const SweepOutcome& outcome) {
+  if (outcome.runs_ended_early == 0) return {};
+  return fmt::format("{} of {} runs refused, stopped or failed (columns status and reason)", outcome.runs_ended_early,
+                     sweep.runs.size() - outcome.runs_missing);
+}
+
 SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   const ResultsFormat format = options.format.value_or(format_in(options.folder));
   if (format == ResultsFormat::hdf5) expect_hdf5();
@@ -407,7 +417,7 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
       const FolderLock lock(options.folder);
       if (const auto found = found_results(sweep, options.folder, options.format)) {
         complete(sweep, options.folder);
-        return {.runs_before = sweep.runs.size(), .results = *found};
+        return {.runs_before = sweep.runs.size(), .runs_ended_early = count_ended_early(*found), .results = *found};
       }
       const Rows rows(sweep, options.folder);  // a journal of another sweep is refused before this one has its own
       journal.emplace(journal_file(options), sweep.digest);
@@ -422,8 +432,10 @@ SweepOutcome run_sweep(const Sweep& sweep, const SweepOptions& options) {
   const FolderLock lock(options.folder);
   if (const auto found = found_results(sweep, options.folder, options.format)) {  // another shard has written them
     outcome.results = *found;
+    outcome.runs_ended_early = count_ended_early(*found);
   } else {
     Rows rows(sweep, options.folder);
+    outcome.runs_ended_early = rows.count_ended_early();
     outcome.runs_missing = sweep.runs.size() - rows.count();
     if (outcome.runs_missing > 0) return outcome;
     outcome.results =

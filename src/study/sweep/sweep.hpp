@@ -38,12 +38,15 @@ struct SweepOptions {
 struct SweepOutcome {
   std::size_t runs_before = 0;       ///< runs of the whole sweep that were finished before
   std::size_t runs_now = 0;          ///< done by this call
-  std::size_t runs_ended_early = 0;  ///< of those done by this call: refused, stopped or failed
+  std::size_t runs_ended_early = 0;  ///< of all that are finished, by any call: refused, stopped or failed
   std::size_t runs_missing = 0;      ///< left to other shards; 0: the results are complete
   /// How many of those done by this call warn, and of what the first one does: a sentence, or none.
   std::vector<std::string> warnings{};
   std::filesystem::path results{};  ///< their file; empty while runs are missing
 };
+
+/// "3 of 15 runs refused, stopped or failed (columns status and reason)", of all that are finished; empty: none were.
+[[nodiscard]] std::string early_ends_text(const Sweep& sweep, const SweepOutcome& outcome);
 
 /// Folder of the results: the one chosen, or else runs/NAME.
 [[nodiscard]] std::filesystem::path folder_of(const Sweep& sweep, const std::filesystem::path& chosen);

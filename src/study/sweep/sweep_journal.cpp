@@ -14,6 +14,8 @@
 #include <string_view>
 #include <utility>
 
+#include "history/run.hpp"
+
 namespace monograin {
 namespace {
 
@@ -115,7 +117,7 @@ SweepRecord::SweepRecord(const fs::path& file, const std::string& digest)
     if (kind == k_columns) layouts_.push_back({std::string(cells)});
     if (kind == k_row) {
       const SweepRow row = row_of(cells);
-      rows_.push_back({row.run, length_});
+      rows_.push_back({static_cast<std::uint32_t>(row.run), row.status == to_string(RunStatus::complete), length_});
       std::size_t& first = layouts_.at(row.layout).first_run;
       first = std::min(first, row.run);
     }

@@ -54,7 +54,8 @@ class SweepRecord {
   SweepRecord(const std::filesystem::path& file, const std::string& digest);
 
   struct Place {
-    std::size_t run = 0;  ///< from 1
+    std::uint32_t run = 0;  ///< from 1
+    bool is_complete = false;
     std::uint64_t begin = 0;
   };
   [[nodiscard]] const std::vector<Place>& rows() const noexcept { return rows_; }

@@ -224,6 +224,27 @@ fs::path write_results(const Sweep& sweep, const fs::path& folder, ResultsFormat
   return file;
 }
 
+std::size_t count_ended_early(const fs::path& results) {
+  const std::string_view complete = to_string(RunStatus::complete);
+  std::size_t count = 0;
+  if (results.extension() == k_hdf5_extension) {
+    const Table table = read_hdf5(results, "status");
+    for (std::size_t row = 0; row < table.row_count(); ++row) count += table.word(row, 0) == complete ? 0U : 1U;
+    return count;
+  }
+  std::ifstream in(results, std::ios::binary);
+  static_cast<void>(skip_header(in));
+  std::string line;
+  std::getline(in, line);
+  const auto status = std::ranges::count(line.substr(0, line.find(",status,")), ',') + 1;
+  while (std::getline(in, line)) {
+    std::string_view rest = line;
+    for (auto k = status; k > 0; --k) rest.remove_prefix(rest.find(',') + 1);
+    count += rest.substr(0, rest.find(',')) == complete ? 0U : 1U;
+  }
+  return count;
+}
+
 void write_sweep_record(const Sweep& sweep, const fs::path& folder) {
   write_text_file(folder / k_sweep_record, record_text(record_json(sweep)));
 }

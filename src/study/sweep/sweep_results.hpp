@@ -46,6 +46,9 @@ inline constexpr const char* k_sweep_record = "sweep.json";
 [[nodiscard]] std::filesystem::path write_results(const Sweep& sweep, const std::filesystem::path& folder,
                                                   ResultsFormat format, const TableLines& lines);
 
+/// Number of runs in a file of results that were refused, stopped or failed.
+[[nodiscard]] std::size_t count_ended_early(const std::filesystem::path& results);
+
 /// Writes the file that repeats the sweep. @throws std::runtime_error naming the file and why it cannot be written
 void write_sweep_record(const Sweep& sweep, const std::filesystem::path& folder);
 

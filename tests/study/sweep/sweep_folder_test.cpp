@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 // The runs of the last two ratios are refused.
 constexpr const char* k_sweep = R"toml([vary]
-"material.poisson_ratio" = { values = [0.2, 0.3, 0.4, 0.5, 0.6] }
+"material.poisson_ratio" = { values = [0.2, 0.3, 0.4, 0.6, 0.7] }
 [scenario]
 model = "hertz"
 [scenario.particle]
@@ -59,6 +59,22 @@ TEST_F(SweepFolder, WithAJournalOfAnotherSweepStaysAsItIs) {
   EXPECT_EQ(names(), std::set<std::string>{"sweep-1-of-2.journal"});
   EXPECT_EQ(read_text(out() / "sweep-1-of-2.journal"), journal);
   EXPECT_EQ(run(sweep_, {2, 2}).runs_missing, 0U) << "the right sweep goes on";
+}
+
+TEST_F(SweepFolder, CountsTheEarlyEndsOfAllCallsAndShards) {
+  const SweepOutcome shard = run(sweep_, {1, 2});
+  EXPECT_EQ(shard.runs_ended_early, 1U);
+  EXPECT_EQ(early_ends_text(sweep_, shard), "1 of 3 runs refused, stopped or failed (columns status and reason)");
+  EXPECT_EQ(run(sweep_, {1, 2}).runs_ended_early, 1U) << "nothing was run";
+  const SweepOutcome last = run(sweep_, {2, 2});
+  EXPECT_EQ(last.runs_now, 2U);
+  EXPECT_EQ(early_ends_text(sweep_, last), "2 of 5 runs refused, stopped or failed (columns status and reason)");
+  for (const ResultsFormat format : {ResultsFormat::csv, ResultsFormat::hdf5}) {
+    const SweepOutcome again = run(sweep_, {}, format);
+    EXPECT_EQ(again.runs_now, 0U);
+    EXPECT_EQ(again.runs_ended_early, 2U);
+  }
+  EXPECT_TRUE(early_ends_text(sweep_, {}).empty());
 }
 
 }  // namespace
