@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -260,8 +259,14 @@ void complete(const Sweep& sweep, const fs::path& folder) {
 /// Lock of the process that writes the results of a folder, so that no two do.
 class FolderLock {
  public:
+  /// @throws std::runtime_error where the file system has no locks
   explicit FolderLock(const fs::path& folder) : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    flock(descriptor_, LOCK_EX);
+    try {
+      lock(descriptor_, folder, true);
+    } catch (...) {
+      close(descriptor_);
+      throw;
+    }
   }
   ~FolderLock() { close(descriptor_); }
   FolderLock(const FolderLock&) = delete;

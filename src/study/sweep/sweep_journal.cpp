@@ -90,6 +90,17 @@ void LinesDigest::add(std::string_view line) noexcept {
 
 std::string LinesDigest::word() const { return fmt::format("{:0{}x}", value_, k_digits); }
 
+void lock(int descriptor, const fs::path& shown, bool waits) {
+  while (flock(descriptor, waits ? LOCK_EX : LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    if (errno == EWOULDBLOCK) fail(shown, "another process is at work on this sweep");
+    fail(shown,
+         fmt::format("cannot be locked: {}; choose a folder on a local disk, and move the journals of all shards "
+                     "into one folder to merge them",
+                     std::strerror(errno)));
+  }
+}
+
 bool is_journal_of(const fs::path& file, const std::string& digest) {
   std::ifstream stream(file, std::ios::binary);
   std::string line;
@@ -143,7 +154,7 @@ SweepJournal::SweepJournal(fs::path file, const std::string& digest) : file_(std
   descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
   try {
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) fail(file_, "another process is at work on this sweep");
+    lock(descriptor_, file_, false);
     const SweepRecord record(file_, digest);
     if (ftruncate(descriptor_, static_cast<off_t>(record.length())) != 0) {
       fail(file_, fmt::format("cannot be written: {}", std::strerror(errno)));

@@ -29,6 +29,12 @@ class LinesDigest {
 /// True for a journal of the sweep with this digest, whatever its rows; false for another file, and for none.
 [[nodiscard]] bool is_journal_of(const std::filesystem::path& file, const std::string& digest);
 
+/// Waits for the lock of an open file or folder, until its descriptor is closed.
+/// @param shown  its path in messages
+/// @param waits  false: another process that has the lock is an error
+/// @throws std::runtime_error naming the path: that another process has the lock, or why there is none, with a remedy
+void lock(int descriptor, const std::filesystem::path& shown, bool waits);
+
 /// Result of one run. Texts are as in the results: cells with commas between them, nothing quoted.
 struct SweepRow {
   std::size_t run = 0;     ///< from 1

@@ -1,6 +1,8 @@
 // What sweeps do with what they find in their folder: journals, and results of other sweeps.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <set>
@@ -9,6 +11,7 @@
 
 #include "study/sweep/sweep.hpp"
 #include "study/sweep/sweep_file_test.hpp"
+#include "study/sweep/sweep_journal.hpp"
 #include "support/refusal.hpp"
 #include "support/text_file.hpp"
 
@@ -75,6 +78,24 @@ TEST_F(SweepFolder, CountsTheEarlyEndsOfAllCallsAndShards) {
     EXPECT_EQ(again.runs_ended_early, 2U);
   }
   EXPECT_TRUE(early_ends_text(sweep_, {}).empty());
+}
+
+TEST_F(SweepFolder, WithoutALockIsNotTakenForOneThatAnotherProcessUses) {
+  const int first = open(folder().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int second = open(folder().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const auto message = [](int descriptor) {
+    return refusal<std::runtime_error>([&] {
+      lock(descriptor, "f", false);
+      return 0;
+    });
+  };
+  lock(first, "f", true);
+  EXPECT_EQ(message(second), "f: another process is at work on this sweep");
+  close(first);
+  lock(second, "f", false);
+  close(second);
+  const std::string none = message(-1);
+  EXPECT_TRUE(contains(none, "f: cannot be locked: Bad file descriptor; choose a folder on a local disk")) << none;
 }
 
 }  // namespace
