@@ -95,7 +95,7 @@ void add_stress_command(CLI::App& app, Action& action) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--first", options->first, "Index of the scene to begin with, from 0 [0]")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
+  command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core that it may use]")
       ->check(CLI::Range(1, 1024));
   command->add_option("-o,--output", options->output, "Folder of the report and the failing scenes [runs/stress]");
   command->footer("Example: monograin stress --time 20s --seed 7 --model hertz,mdr");

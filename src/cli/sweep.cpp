@@ -153,7 +153,7 @@ void add_sweep_command(CLI::App& app, Action& action) {
       "sweep",
       "Run one scenario many times over a grid, a table or a space-filling design, or continue a stopped sweep");
   command->add_option("FILE", options->file, "Sweep file (TOML)")->required();
-  command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
+  command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core that it may use]")
       ->check(CLI::Range(1, 1024));
   command->add_option("--shard", options->shard, "Do every n-th run only, from the i-th; the last shard to end merges")
       ->type_name("i/n");
@@ -178,7 +178,7 @@ void add_sensitivity_command(CLI::App& app, Action& action) {
       "sensitivity",
       "Estimate the share of the results' variance that each key causes: Sobol indices, Morris screening");
   command->add_option("FILE", options->file, "Sweep file (TOML) with design = \"saltelli\" or \"morris\"")->required();
-  command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core]")
+  command->add_option("-j,--jobs", options->threads, "Number of threads, 1 to 1024 [one for each core that it may use]")
       ->check(CLI::Range(1, 1024));
   command->add_option("--confidence", options->confidence, "Level of the two-sided intervals, between 0 and 1 [0.95]")
       ->check(CLI::Range(1e-6, 1.0 - 1e-6))

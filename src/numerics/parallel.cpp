@@ -1,5 +1,7 @@
 #include "numerics/parallel.hpp"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -11,7 +13,10 @@
 namespace monograin {
 
 std::size_t thread_count(int wanted) noexcept {
-  return wanted > 0 ? static_cast<std::size_t>(wanted) : std::max(1U, std::thread::hardware_concurrency());
+  if (wanted > 0) return static_cast<std::size_t>(wanted);
+  cpu_set_t cores;
+  if (sched_getaffinity(0, sizeof cores, &cores) == 0) return static_cast<std::size_t>(std::max(1, CPU_COUNT(&cores)));
+  return std::max(1U, std::thread::hardware_concurrency());  // more cores than the set can hold
 }
 
 void for_each_index(std::size_t count, std::size_t threads,

@@ -2,6 +2,8 @@
 
 #include "numerics/parallel.hpp"
 
+#include <sched.h>
+
 #include <atomic>
 #include <stdexcept>
 #include <thread>
@@ -46,6 +48,16 @@ TEST(Parallel, ThrowsTheFirstExceptionAgainAndBeginsNothingAfterIt) {
 TEST(Parallel, UsesEveryCoreUnlessANumberIsGiven) {
   EXPECT_GE(thread_count(0), 1U);
   EXPECT_EQ(thread_count(3), 3U);
+}
+
+TEST(Parallel, UsesTheCoresThatItIsConfinedTo) {
+  std::jthread([] {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(sched_getcpu(), &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    EXPECT_EQ(thread_count(0), 1U);
+  }).join();
 }
 
 }  // namespace
