@@ -44,7 +44,8 @@ void EquilibriumSearch::solve(Contacts& contacts, std::span<const Ramp> ramps, d
   set_targets(contacts, ramps, xi, targets_);
   // Idle walls may move the centre to several positions, of which Newton's method does not choose the nearest.
   if (is_own_mode && centre_.follow(contacts, targets_, y)) return;
-  if (balance_from(contacts, y, 1.0) || balance_from(contacts, y, shrinkage(contacts, y))) return;
+  if (balance_from(contacts, y, 1.0)) return;
+  if (const double factor = shrinkage(contacts, y); factor < 1.0 && balance_from(contacts, y, factor)) return;
   if (centre_.clear_all(contacts, targets_, y)) return;
   try {
     approach_in_steps(contacts, y);
