@@ -38,9 +38,11 @@ def test_a_run_has_the_numbers_of_the_program_bit_by_bit(name, run_program, tmp_
     for column in expected.columns:
         assert_array_equal(run[column], expected[column], err_msg=column)
     events = mg.Table.read_csv(tmp_path / "out" / "events.csv")
-    assert [event["event"] for event in run.events] == [event["event"] for event in events]
-    if len(events) > 0:
-        assert_array_equal(run.events["time"], events["time"])
+    assert run.events.columns == events.columns
+    assert run.events.units == events.units
+    assert len(run.events) == len(events)
+    for column in events.columns:
+        assert_array_equal(run.events[column], events[column], err_msg=column)
 
 
 def test_saving_writes_the_files_of_the_program(run_program, die, tmp_path):
