@@ -25,15 +25,10 @@ constexpr const char* k_sweep = R"toml([vary]
 "material.poisson_ratio" = { values = [0.2, 0.3, 0.4, 0.6, 0.7] }
 [scenario]
 model = "hertz"
-[scenario.particle]
-radius = "2 mm"
-[scenario.material]
-youngs_modulus = "1 GPa"
-[scenario.loading]
-configuration = "simple"
-steps = [{ displacement = "0.1 R0", duration = "1 s" }]
-[scenario.output]
-points = 4
+particle.radius = "2 mm"
+material.youngs_modulus = "1 GPa"
+loading = { configuration = "simple", steps = [{ displacement = "0.1 R0", duration = "1 s" }] }
+output.points = 4
 )toml";
 
 class SweepFolder : public SweepFileTest {
